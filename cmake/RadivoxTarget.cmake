@@ -1,0 +1,11 @@
+# Warnings, contraction and sanitizers for our own targets.
+function(radivox_target name)
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-missing-field-initializers
+    # Float results must not depend on what the compiler fuses: CPU oracles are compared with shaders bit for bit.
+    -ffp-contract=off)
+  if(RADIVOX_SANITIZE)
+    target_compile_options(${name} PUBLIC -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+    target_link_options(${name} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()

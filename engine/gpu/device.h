@@ -1,0 +1,134 @@
+// The Vulkan device: our own, or a host's that we adopt. Owns no window, no globals.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+
+namespace radivox::gpu {
+
+/// Throws Error(OutOfMemory / DeviceFailed) naming the call when `result` is an error.
+void check(VkResult result, const char* call);
+
+/// What the device can do, decided once at start; reported by `radivox info`. Optional features are used where true.
+struct Capabilities {
+  std::string deviceName;
+  std::string driverName;
+  std::string driverInfo;
+  uint32_t apiVersion = 0;
+  VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+  bool conservativeRasterization = false;  ///< VK_EXT_conservative_rasterization (overestimate)
+  bool geometryShader = false;
+  bool pushDescriptor = false;  ///< VK_KHR_push_descriptor; a descriptor pool is used otherwise
+  bool int64Atomics = false;    ///< reported only; sums use pairs of 32-bit words, which every device has
+  bool rayQuery = false;        ///< reported only, so far
+  bool debugUtils = false;
+  uint32_t subgroupSize = 0;
+  float timestampPeriodNs = 0.f;  ///< 0: no timestamps
+  VkDeviceSize maxStorageBufferRange = 0;
+  VkDeviceSize maxBufferSize = 0;
+  VkDeviceSize deviceLocalBytes = 0;
+  uint32_t maxImageDimension2D = 0;
+  uint32_t maxImageArrayLayers = 0;
+  uint32_t maxComputeWorkGroupCount = 0;  ///< along x
+};
+
+struct DeviceOptions {
+  int index = -1;                 ///< physical device; −1: the best (discrete, integrated, virtual, CPU)
+  bool validation = false;        ///< Khronos layer with synchronization validation; messages go to `onMessage`
+  std::string pipelineCacheFile;  ///< empty: none. Written to a temporary name and renamed when the device closes
+  bool pushDescriptors = true;    ///< false forces the descriptor-pool fallback (tests)
+  bool conservativeRasterization = true;  ///< false hides the hardware extension (tests)
+  std::function<void(const std::string&)> onMessage;  ///< validation messages; default: stderr and count
+};
+
+/// Handles of a host's device. The host keeps ownership and must have enabled requiredFeatures() (see device.cpp).
+struct AdoptInfo {
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;  ///< graphics + compute
+  uint32_t queueFamily = 0;
+  std::vector<std::string> deviceExtensions;  ///< those the host enabled
+  std::string pipelineCacheFile;
+};
+
+/// Bytes by what they are for. "Memory reported is memory allocated": every vkAllocateMemory goes through Device.
+struct MemoryUse {
+  VkDeviceSize current = 0;
+  VkDeviceSize peak = 0;
+  uint32_t allocationCount = 0;
+};
+
+class Device {
+ public:
+  static std::unique_ptr<Device> create(const DeviceOptions& options = {});  ///< throws Unsupported when no device fits
+  static std::unique_ptr<Device> adopt(const AdoptInfo& info);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkInstance instance() const { return instance_; }
+  VkPhysicalDevice physicalDevice() const { return physicalDevice_; }
+  VkDevice handle() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  uint32_t queueFamily() const { return queueFamily_; }
+  VkPipelineCache pipelineCache() const { return pipelineCache_; }
+  const Capabilities& capabilities() const { return capabilities_; }
+  uint32_t validationMessageCount() const { return validationMessageCount_; }
+
+  /// One allocation per call (Radivox has tens of resources, not thousands). Throws OutOfMemory with the size.
+  VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags flags, bool deviceAddress);
+  void free(VkDeviceMemory memory);
+  MemoryUse memoryUse() const;
+  /// Peak starts anew at the current use.
+  void resetPeakMemory();
+
+  /// Test hook: the n-th allocation or submission from now on fails (0: never). Counts down at each call.
+  void failAfter(uint32_t n) { failCountdown_ = n; }
+  bool takeInjectedFailure();
+
+  /// Records `record` into a fresh command buffer, submits, waits. For uploads, read-back and tests.
+  void submitAndWait(const std::function<void(VkCommandBuffer)>& record);
+  /// Submits an already recorded command buffer and waits for it.
+  void submitAndWait(VkCommandBuffer commands);
+  VkCommandPool commandPool() const { return commandPool_; }
+
+  /// Debug name, where VK_EXT_debug_utils is there.
+  void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
+
+  // VK_KHR_push_descriptor entry point; null without the extension.
+  PFN_vkCmdPushDescriptorSetKHR cmdPushDescriptorSet = nullptr;
+
+ private:
+  Device() = default;
+  friend struct DeviceBuilder;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physicalDevice_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  uint32_t queueFamily_ = 0;
+  VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+  VkCommandPool commandPool_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;
+  bool ownsDevice_ = false;
+  std::string pipelineCacheFile_;
+  Capabilities capabilities_;
+  VkPhysicalDeviceMemoryProperties memoryProperties_{};
+  mutable std::mutex memoryMutex_;
+  MemoryUse memoryUse_;
+  std::vector<std::pair<VkDeviceMemory, VkDeviceSize>> allocations_;
+  uint32_t failCountdown_ = 0;
+  uint32_t validationMessageCount_ = 0;
+  std::function<void(const std::string&)> onMessage_;
+};
+
+}  // namespace radivox::gpu

@@ -1,0 +1,115 @@
+// Buffers and images. Move-only owners; or views of memory that someone else owns (graph aliasing, a host's images).
+#pragma once
+
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/device.h"
+
+namespace radivox::gpu {
+
+enum class MemoryKind {
+  Device,    ///< device local
+  Upload,    ///< host visible and coherent, mapped; device reads
+  ReadBack,  ///< host visible and coherent, mapped (cached where there is such a type); device writes
+};
+
+/// Usage of every buffer: storage | transfer src/dst | indirect | uniform | shader device address (+ vertex/index).
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Throws OutOfMemory past maxBufferSize. `bytes` 0 becomes 16, so that a binding is always valid.
+  Buffer(Device& device, const std::string& name, VkDeviceSize bytes, MemoryKind kind = MemoryKind::Device);
+  /// A buffer bound into memory that the caller owns (transient aliasing).
+  Buffer(Device& device, const std::string& name, VkDeviceSize bytes, VkDeviceMemory memory, VkDeviceSize offset);
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+  ~Buffer();
+
+  VkBuffer handle() const { return buffer_; }
+  VkDeviceSize bytes() const { return bytes_; }
+  VkDeviceAddress address() const { return address_; }
+  void* mapped() const { return mapped_; }
+  const std::string& name() const { return name_; }
+  explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
+
+  static VkMemoryRequirements requirements(Device& device, VkDeviceSize bytes);
+
+ private:
+  void release() noexcept;
+  Device* device_ = nullptr;
+  VkBuffer buffer_ = VK_NULL_HANDLE;
+  VkDeviceMemory ownedMemory_ = VK_NULL_HANDLE;
+  VkDeviceSize bytes_ = 0;
+  VkDeviceAddress address_ = 0;
+  void* mapped_ = nullptr;
+  std::string name_;
+};
+
+struct ImageInfo {
+  uint32_t width = 1;
+  uint32_t height = 1;
+  uint32_t layers = 1;  ///< views are 2D for 1 layer unless `arrayView`
+  VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  bool arrayView = false;
+  /// Colour formats: storage | sampled | colour attachment | transfer. Depth formats: sampled | depth attachment | transfer.
+};
+
+class Image {
+ public:
+  Image() = default;
+  Image(Device& device, const std::string& name, const ImageInfo& info);
+  Image(Device& device, const std::string& name, const ImageInfo& info, VkDeviceMemory memory, VkDeviceSize offset);
+  /// A host's image; its layout at the start of our commands is `layout`. Not destroyed by us (the view is the host's too).
+  Image(VkImage image, VkImageView view, const ImageInfo& info, VkImageLayout layout);
+  Image(Image&& other) noexcept;
+  Image& operator=(Image&& other) noexcept;
+  ~Image();
+
+  VkImage handle() const { return image_; }
+  VkImageView view() const { return view_; }                         ///< all layers
+  VkImageView layerView(uint32_t layer) const { return layerViews_.at(layer); }  ///< one layer, 2D, for rendering
+  const ImageInfo& info() const { return info_; }
+  VkImageAspectFlags aspect() const;
+  const std::string& name() const { return name_; }
+  explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
+
+  /// Layout as of the last recorded command. Radivox keeps colour images in GENERAL; depth is attachment or read-only.
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+
+  static VkMemoryRequirements requirements(Device& device, const ImageInfo& info);
+
+ private:
+  void release() noexcept;
+  void makeViews();
+  Device* device_ = nullptr;
+  VkImage image_ = VK_NULL_HANDLE;
+  VkImageView view_ = VK_NULL_HANDLE;
+  std::vector<VkImageView> layerViews_;
+  VkDeviceMemory ownedMemory_ = VK_NULL_HANDLE;
+  bool ownsImage_ = false;
+  ImageInfo info_;
+  std::string name_;
+};
+
+/// Copies through a staging buffer and waits. For scene upload and tests; never per frame.
+void upload(Device& device, Buffer& to, std::span<const std::byte> data, VkDeviceSize offset = 0);
+std::vector<std::byte> download(Device& device, const Buffer& from, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
+/// Tightly packed rows of one layer, top row first.
+std::vector<std::byte> download(Device& device, Image& from, uint32_t layer = 0);
+
+template <class T>
+void upload(Device& device, Buffer& to, const std::vector<T>& data) {
+  upload(device, to, std::as_bytes(std::span(data)));
+}
+template <class T>
+std::vector<T> downloadAs(Device& device, const Buffer& from, size_t count) {
+  auto raw = download(device, from, 0, count * sizeof(T));
+  std::vector<T> out(count);
+  if (count > 0) std::memcpy(out.data(), raw.data(), count * sizeof(T));
+  return out;
+}
+
+}  // namespace radivox::gpu

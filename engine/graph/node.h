@@ -1,0 +1,151 @@
+// The node contract. A node declares ports and needs (cheaply, no GPU), prepares pipelines once its plan is known, and records
+// commands with no allocation and no throw.
+//
+// When a node runs: RunWhen::OnChange (default) when the version of an input it reads, one of its parameters, or the plan changed
+// since it last ran; RunWhen::EveryFrame always. A node that did not run leaves its outputs, which consumers still read.
+//
+// Sizes that only the GPU knows (how many voxels, faces, clusters) are *counts*: a node publishes a count from a word of one of its
+// output buffers; ports of later nodes are shaped by it. The executor ends a submission after the publishing node, reads the word,
+// allocates, and goes on. Once counts are known and nothing changes there are no such stops.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/gpu/commands.h"
+#include "engine/graph/resource.h"
+#include "engine/params/params.h"
+#include "engine/scene/traits.h"
+
+namespace radivox::graph {
+
+enum class Access : uint8_t {
+  Read,      ///< input
+  Write,     ///< output; all of it, or (persistent) parts of it, new
+  Modify,    ///< input and output in one: the old version of the resource is dead to everybody else
+  Scratch,   ///< private to the run; contents undefined at start; memory is shared with other nodes' scratch
+  ReadBack,  ///< output in host memory, valid after the frame's work is done
+};
+
+/// Pipeline stages that touch a port, for barriers.
+enum Use : uint32_t {
+  UseCompute = 1,
+  UseRaster = 2,      ///< vertex, geometry and fragment shaders
+  UseAttachment = 4,  ///< colour or depth attachment
+  UseTransfer = 8,
+  UseIndirect = 16,
+  UseHost = 32,
+};
+
+struct Port {
+  std::string name;
+  Access access = Access::Read;
+  Shape shape;            ///< outputs and scratch; ignored for Read (the producer's shape holds)
+  std::string meaning;    ///< type, unit, meaning of 0: "E_dir per face, W/m², 0: unlit"
+  uint32_t use = UseCompute | UseTransfer;
+  bool optional = false;  ///< Read: may stay unconnected. Write: made only when somebody reads it
+  bool unwanted = false;  ///< Read: not needed for this scene or request; the edge is ignored, and `unwantedReason` explains a culled producer
+  std::string unwantedReason;
+  bool persistent = false;  ///< Write: contents of the last run are kept and updated in part (zero-filled when made)
+  bool growable = false;    ///< Write: allocated by the node itself while it runs (RecordContext::grow), never by its shape
+};
+
+/// Filled by Node::declare. Port order is print order.
+class Declaration {
+ public:
+  Declaration(const scene::Traits& traits, const scene::Request& request, const gpu::Capabilities& capabilities)
+      : traits(traits), request(request), capabilities(capabilities) {}
+  const scene::Traits& traits;
+  const scene::Request& request;
+  const gpu::Capabilities& capabilities;
+
+  /// Input. Names that begin with "scene." or "view." connect themselves to the import of that name.
+  Port& read(std::string name, std::string meaning, uint32_t use = UseCompute);
+  Port& write(std::string name, Shape shape, std::string meaning, uint32_t use = UseCompute | UseTransfer);
+  Port& modify(std::string name, std::string meaning, uint32_t use = UseCompute);
+  Port& scratch(std::string name, Shape shape, std::string meaning, uint32_t use = UseCompute | UseTransfer);
+  Port& readBack(std::string name, Shape shape, std::string meaning);
+
+  /// Publishes the 32-bit word at `byteOffset` of output `port` as count `name` after each run of this node.
+  void publishCount(std::string name, std::string port, uint64_t byteOffset);
+  /// The node works in host-paced steps (Node::stepCount, Node::stepDone): each step is a submission of its own.
+  void hostPaced() { hostPaced_ = true; }
+  void runEveryFrame() { everyFrame_ = true; }
+  /// The node has nothing to do here; its outputs do not exist. `reason` is printed in the plan.
+  void leaveOut(std::string reason) { leftOut_ = std::move(reason); }
+
+  std::vector<Port> ports;
+  struct PublishedCount {
+    std::string name, port;
+    uint64_t byteOffset;
+  };
+  std::vector<PublishedCount> publishedCounts;
+  bool isHostPaced() const { return hostPaced_; }
+  bool runsEveryFrame() const { return everyFrame_; }
+  const std::string& leftOut() const { return leftOut_; }
+
+ private:
+  bool hostPaced_ = false;
+  bool everyFrame_ = false;
+  std::string leftOut_;
+};
+
+/// What a node sees while it prepares pipelines: the device, and which optional ports are there.
+class PrepareContext {
+ public:
+  virtual ~PrepareContext() = default;
+  virtual gpu::Device& device() = 0;
+  virtual bool has(std::string_view port) const = 0;  ///< the port is connected / its output is wanted
+  virtual const scene::Traits& traits() const = 0;
+  virtual const scene::Request& request() const = 0;
+};
+
+/// What a node sees while it runs.
+class RecordContext {
+ public:
+  virtual ~RecordContext() = default;
+  virtual gpu::Commands& commands() = 0;
+  virtual bool has(std::string_view port) const = 0;
+  virtual const gpu::Buffer& buffer(std::string_view port) = 0;
+  virtual gpu::Image& image(std::string_view port) = 0;
+  virtual uint64_t count(std::string_view name) const = 0;  ///< asserts that it is known
+  virtual bool changed(std::string_view inputPort) const = 0;  ///< its version differs from the one this node last ran with
+  virtual bool firstRun() const = 0;                           ///< never run yet, or its parameters or plan changed
+  virtual uint32_t step() const = 0;                           ///< host-paced nodes
+  virtual const scene::Traits& traits() const = 0;
+  virtual const scene::Request& request() const = 0;
+
+  // Only in host-paced nodes, only from stepDone / at the start of record of a step:
+  /// Appends a device buffer of `bytes` to growable port `port`; earlier ones stay. Returns it. Throws OutOfMemory.
+  virtual const gpu::Buffer& grow(std::string_view port, uint64_t bytes) = 0;
+  /// Frees all buffers of a growable port (call in step 0 before growing).
+  virtual void clearGrown(std::string_view port) = 0;
+  /// Buffers of a growable port, own or input, in the order they were grown.
+  virtual std::vector<const gpu::Buffer*> grown(std::string_view port) const = 0;
+  /// Host copy of part of a buffer port; valid in stepDone.
+  virtual std::vector<std::byte> readBuffer(std::string_view port, uint64_t offset, uint64_t bytes) = 0;
+  /// Publishes a count from the host (host-paced nodes).
+  virtual void setCount(std::string_view name, uint64_t value) = 0;
+  virtual void reportProgress(double fraction) = 0;
+  /// Figures for --stats (`node.name`), e.g. iterations, rays. Any time while recording or in stepDone.
+  virtual void reportStat(std::string_view name, double value) = 0;
+};
+
+class Node {
+ public:
+  virtual ~Node() = default;
+  virtual std::string_view type() const = 0;  ///< "clustered_voxel.voxelize"
+  virtual params::Table& params() = 0;
+  virtual void declare(Declaration& declaration) = 0;
+  virtual void prepare(PrepareContext&) {}
+  virtual uint32_t stepCount(RecordContext&) { return 1; }  ///< host-paced nodes; asked again after each step, so it may grow
+  virtual void record(RecordContext& context) = 0;
+  virtual void stepDone(RecordContext&) {}  ///< host-paced nodes: the GPU has finished this step
+  /// After the frame's work is done and only if the node ran: read-back ports may be read here, stats reported.
+  virtual void frameDone(RecordContext&) {}
+};
+
+}  // namespace radivox::graph

@@ -1,0 +1,41 @@
+// What a scene, a camera and a request contain: nodes read these while declaring, to leave out what is not needed.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <set>
+#include <string>
+
+namespace radivox::scene {
+
+struct Traits {
+  uint64_t triangleCount = 0;
+  uint64_t vertexCount = 0;
+  uint32_t materialCount = 0;
+  uint32_t textureCount = 0;
+  uint32_t directionalLightCount = 0;
+  uint32_t pointLightCount = 0;
+  uint32_t spotLightCount = 0;
+  uint32_t emissiveTriangleCount = 0;
+  bool alphaMasked = false;   ///< some material has alphaMode MASK
+  bool singleSided = false;   ///< some material is not double-sided
+  bool sky = false;           ///< constant sky radiance above 0
+  glm::vec3 boundsMin{0.f};   ///< metres, relative to the scene origin (Scene::origin)
+  glm::vec3 boundsMax{0.f};
+  double surfaceArea = 0.0;   ///< m², one side of each triangle
+
+  uint32_t punctualLightCount() const { return directionalLightCount + pointLightCount + spotLightCount; }
+  bool lit() const { return punctualLightCount() + emissiveTriangleCount > 0 || sky; }
+};
+
+constexpr uint32_t kAllBounces = 0xffffffffu;
+
+struct Request {
+  uint32_t width = 960;
+  uint32_t height = 540;
+  uint32_t bounces = kAllBounces;  ///< indirect bounces; 0: direct light only
+  std::set<std::string> aovs{"color"};
+  bool wantsIndirect() const { return bounces > 0; }
+};
+
+}  // namespace radivox::scene

@@ -1,0 +1,55 @@
+// The voxel grid, voxel faces and clusters: what the clustered_voxel nodes hand to each other.
+#ifndef RADIVOX_SHADERS_SHARED_VOXEL_H
+#define RADIVOX_SHADERS_SHARED_VOXEL_H
+#include "types.h"
+RADIVOX_SHARED_BEGIN
+
+// Grid space: p_grid = (p − origin) / h; voxel i holds grid space [i, i+1). N voxels along the longest side of the bounds, with half a
+// voxel of margin: h = longest / (N − 1), size_k = ceil(extent_k / h) + 1, centred on the bounds.
+struct Grid {
+  vec3 origin;    // m, relative to Scene::origin
+  float h;        // voxel edge, m
+  float inverseH;
+  uvec3 size;       // voxels
+  uvec3 bricks;     // ceil(size / 4): bricks of 4×4×4 voxels
+  uint brickCount;  // product
+  uint pad;
+};
+
+// Faces of a voxel, f = 0…5: +x −x +y −y +z −z. axis = f >> 1, negative if f & 1.
+RADIVOX_CONST uint kFaceCount = 6u;
+
+// Brick index: x + bricks.x·(y + bricks.y·z). Bit of a voxel in its brick's 64-bit word (two uints): x + 4y + 16z of the low two bits
+// of each coordinate. Compact voxel index = rank[brick] + popcount(bits below), so voxels are ordered by brick, then bit.
+// Voxel coordinate packed: x | y << 10 | z << 20.
+
+// faceKey = voxel index << 3 | f. Faces are ordered by key, so face index = firstFace[voxel] + popcount(faceMask[voxel] & (2^f − 1)).
+struct Face {
+  uint key;
+  float area;      // a_s in h²: Σ area · max(0, n·e_f)
+  uint normal;     // n_s, octahedral snorm16 × 2
+  uint position;   // x_s inside the voxel, unorm 10:10:10, x low
+  uvec2 albedo;    // ρ_s, unorm16: r | g << 16, b
+};
+
+struct Cluster {
+  vec3 position;    // area-weighted mean, grid space
+  float area;       // A_c = Σ a_s, h²
+  vec3 normal;      // unit, area-weighted mean
+  uint faceCount;
+  vec3 albedo;      // area-weighted mean ρ
+  uint firstMember; // into cluster.members
+};
+
+// Visibility row entry: id | (count − 1) << 24. id < C: cluster; C ≤ id < C + F: face id − C (near hit); kMissBase + b: miss in
+// direction bin b (6 bins: the dominant axis of the direction, as faces are numbered).
+RADIVOX_CONST uint kEntryIdMask = 0x00ffffffu;
+RADIVOX_CONST uint kMissBase = 0x00fffff0u;
+RADIVOX_CONST uint kMaxRays = 256u;
+
+// Row of face s: entries [rowStart[s], rowStart[s+1]) of the chunk s / kRowsPerChunk, counted from that chunk's first entry; a
+// chunk's rowStart has kRowsPerChunk + 1 words. Chunk addresses are in a table of uvec2.
+RADIVOX_CONST uint kRowsPerChunk = 16384u;
+
+RADIVOX_SHARED_END
+#endif
