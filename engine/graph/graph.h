@@ -1,6 +1,7 @@
 // The user's graph: nodes, edges, outputs. Compiling never edits it.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ class Graph {
   void connect(std::string_view from, std::string_view to);
   void output(std::string_view endpoint);                    ///< kept alive and readable after the run
   void clearOutputs() { outputs_.clear(); }
+  /// What a picture of this graph can be asked for: AOV name → "node.port", or "node.port.w" for one channel (x, y, z, w) of an image.
+  /// Only a table of names: nothing is kept alive by it (a host calls output() for the AOVs it wants).
+  void setAov(std::string name, std::string endpoint) { aovs_[std::move(name)] = std::move(endpoint); }
+  const std::map<std::string, std::string>& aovs() const { return aovs_; }
 
   Node* find(std::string_view name) const;
   /// `--set node.param=value`. Throws BadInput with the nearest name.
@@ -43,17 +48,22 @@ class Graph {
   const std::vector<Endpoint>& outputs() const { return outputs_; }
 
   /// {"nodes": {"voxelize": {"type": "clustered_voxel.voxelize", "params": {"resolution": 64}}, …},
-  ///  "edges": [["voxelize.occupancy", "index.occupancy"], …], "outputs": ["composite.color"]}
+  ///  "edges": [["voxelize.occupancy", "index.occupancy"], …], "outputs": ["composite.color"],
+  ///  "aovs": {"color": "composite.color", "depth": "gbuffer.position.w"}, "help": "one line"}
+  /// "aovs" and "help" may be missing; the node of an AOV must exist.
   /// `source` names the file in errors. All errors of a graph come in one message. Throws BadInput.
   static Graph fromJson(std::string_view text, const std::string& source, const plugin::Registry& registry);
   std::string toJson() const;
-  /// {"name": "paper", "set": {"voxelize.resolution": 64, …}}. Parameters of nodes that the graph lacks are errors.
+  /// {"name": "paper", "help": "…", "graph": "clustered_voxel", "request": {"bounces": 1}, "set": {"voxelize.resolution": 64, …}}.
+  /// Applies "set" only; "name", "help", "graph" and "request" are the host's to read, any other key is an error. Parameters of nodes
+  /// that the graph lacks are errors.
   void applyPreset(std::string_view text, const std::string& source);
 
  private:
   std::vector<Entry> nodes_;
   std::vector<Edge> edges_;
   std::vector<Endpoint> outputs_;
+  std::map<std::string, std::string> aovs_;
 };
 
 }  // namespace radivox::graph
