@@ -12,6 +12,11 @@ struct LightOptions {
   uint32_t pointShadowResolution = 1024;   ///< a side of a cube face
   uint32_t emitterSamples = 32;            ///< points on emissive triangles, by power; 0: emitters light through voxel rays only
   uint32_t emitterShadowResolution = 256;
+  /// What all shadow maps may take together (8 bytes a texel: depth and triangle). Past it resolutions are halved, largest class first, then
+  /// emitter samples; if that is not enough, setUpLights throws OutOfMemory saying how many lights fit.
+  uint64_t maxShadowBytes = 512ull << 20;
+  uint32_t maxShadowSide = 4096;           ///< GpuScene lowers these two to the device's limits
+  uint32_t maxShadowLayers = 256;
 };
 
 /// Imports (names as in the plan):
@@ -29,7 +34,11 @@ class GpuScene {
   void importInto(graph::Executor& executor) const;
 
   std::vector<graph::Import> imports() const;
-  graph::Counts counts() const;  ///< triangles, vertices, lights, shadow_views, shadow_resolution, emissive_triangles, width, height
+  /// triangles, vertices, materials, lights, shadow_views, shadow_resolution (side of a layer), shadow_layers, emitter_samples,
+  /// emissive_triangles, width, height. The shadow image is shadow_resolution² × shadow_layers.
+  graph::Counts counts() const;
+  /// What had to be lowered to fit (LightSetup::notes), one line each.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   gpu::Device& device_;
@@ -38,6 +47,7 @@ class GpuScene {
   std::vector<gpu::Buffer> texels_;
   uint64_t geometryVersion_ = 1, lightVersion_ = 1, cameraVersion_ = 1;
   graph::Counts counts_;
+  std::vector<std::string> notes_;
 };
 
 /// The same lights and shadow views on the host, without a device (used by GpuScene and by tests).
@@ -45,8 +55,13 @@ struct LightSetup {
   std::vector<shared::Light> lights;
   std::vector<shared::ShadowView> views;
   std::vector<shared::EmissiveTriangle> emissive;
-  uint32_t shadowResolution = 1;  ///< largest in use; layers all have this size
+  uint32_t shadowResolution = 1;   ///< texels a side of every layer; views are tiles of layers
+  uint32_t shadowLayers = 1;       ///< at least 1, so that an image can always be made
+  uint32_t emitterSampleCount = 0; ///< 0 with emissive triangles: emitters light through rays
+  std::vector<std::string> notes;  ///< what had to be lowered to fit, one line each
 };
+/// Scene::traits() with emittersByRays as these options have it.
+Traits traitsFor(const Scene& scene, const LightOptions& options);
 LightSetup setUpLights(const Scene& scene, const LightOptions& options);
 
 }  // namespace radivox::scene

@@ -39,6 +39,8 @@ struct CameraDescription {
   bool orthographic = false;
   float yfov = 0.8f;        ///< radians
   float ymag = 1.f;         ///< orthographic half height, m
+  float znear = 1e-3f;      ///< m, along the view axis
+  float zfar = 1e3f;        ///< m; orthographic only (perspective ends nowhere)
 };
 
 struct Scene {
@@ -57,7 +59,6 @@ struct Scene {
 
   size_t triangleCount() const { return indices.size() / 3; }
   Traits traits() const;
-  /// "triangles", "vertices", "materials", … for shapes.
 };
 
 /// SCENE of the command line: a .gltf/.glb path or builtin:NAME[?key=value&…]. Throws BadInput naming file, place and mend.

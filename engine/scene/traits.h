@@ -8,6 +8,9 @@
 
 namespace radivox::scene {
 
+/// Above this share of the surface a few sample points no longer stand for what emits.
+constexpr double kMaxSampledEmissiveShare = 0.1;
+
 struct Traits {
   uint64_t triangleCount = 0;
   uint64_t vertexCount = 0;
@@ -23,6 +26,10 @@ struct Traits {
   glm::vec3 boundsMin{0.f};   ///< metres, relative to the scene origin (Scene::origin)
   glm::vec3 boundsMax{0.f};
   double surfaceArea = 0.0;   ///< m², one side of each triangle
+  double emissiveArea = 0.0;  ///< m², likewise of the emissive ones
+  /// Emitters light through rays that fetch their B_e, not through samples with shadow maps: more than kMaxSampledEmissiveShare of the
+  /// surface emits, or no samples are wanted (traitsFor in gpu_scene.h knows the latter).
+  bool emittersByRays = false;
 
   uint32_t punctualLightCount() const { return directionalLightCount + pointLightCount + spotLightCount; }
   bool lit() const { return punctualLightCount() + emissiveTriangleCount > 0 || sky; }

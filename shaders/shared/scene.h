@@ -57,20 +57,23 @@ struct Light {
   float cosInner;      // spot
   float cosOuter;      // spot
   uint firstShadowView;
-  uint shadowViewCount;  // directional 1, spot 1 (2…6 when wider than 90° halves), point 6, emitter sample 5 or 6
+  uint shadowViewCount;  // directional 1; spot 1, or 5 when its outer half angle is above 60°; point 6; emitter sample 5
   uint triangle;         // emitter sample: the emissive triangle it stands for; else kNoTexture
 };
 
-// One shadow map layer. The map stores depth (reversed z) and triangle id + 1 of the nearest surface seen from the light.
+// One view of a light: a square tile of resolution² texels at (offsetX, offsetY) of a shadow map layer. viewProjection fills the tile
+// with clip space [−1, 1]² (texel = offset + (ndc·0.5 + 0.5)·resolution). Views of a light meet at their edges without overlap. The map stores
+// depth (reversed z) and triangle id + 1 of the nearest surface seen from the light.
 struct ShadowView {
   mat4 viewProjection;   // relative world metres → clip, reversed z
   mat4 inverseViewProjection;
   vec3 origin;           // light position; directional: unused
   uint light;
   float texelFlux;       // directional: texel area in m²; others: texel area on the plane at distance 1 m (for solid angles)
-  uint resolution;       // texels a side in use
+  uint resolution;       // texels a side
   uint layer;
-  float pad;
+  uint offsetX;          // texels, of the tile's top left corner in the layer
+  uint offsetY;
 };
 
 struct EmissiveTriangle {
@@ -101,7 +104,7 @@ struct SceneInfo {
   uint emissiveTriangleCount;
   uint shadowViewCount;
   float emissiveArea;  // m²
-  uint pad;
+  uint emitterSampleCount;  // lights of type kLightEmitterSample; 0 with emissive triangles: emitters light through rays
 };
 
 RADIVOX_SHARED_END
