@@ -1,7 +1,20 @@
+#include "engine/graph/node.h"
 #include "engine/plugin/registry.h"
+#include "modules/clustered_voxel/filter/filter.h"
+#include "modules/clustered_voxel/gather/gather.h"
+#include "modules/clustered_voxel/inject/inject.h"
+#include "modules/clustered_voxel/mark/mark.h"
+#include "modules/clustered_voxel/shade/shade.h"
 
 namespace radivox::clustered_voxel {
 
-void registerNodes(plugin::Registry& registry) { (void)registry; }
+// In reading order: what each stage writes, the next ones read (docs/data_flow.md).
+void registerNodes(plugin::Registry& registry) {
+  registry.add<Inject>("direct light at voxel faces, by shadow-map flux or the paper's points");
+  registry.add<Mark>("voxel faces that this view needs");
+  registry.add<Gather>("irradiance of the needed faces from their visible clusters, lazily");
+  registry.add<Filter>("smooths gathered irradiance over surfaces, not across walls");
+  registry.add<Shade>("indirect irradiance on screen from voxel faces");
+}
 
 }  // namespace radivox::clustered_voxel

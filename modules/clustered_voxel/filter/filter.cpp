@@ -1,0 +1,97 @@
+#include "modules/clustered_voxel/filter/filter.h"
+
+#include "modules/clustered_voxel/structure.h"
+
+namespace radivox::clustered_voxel {
+
+using gpu::BindingType;
+using graph::Extent;
+using graph::Shape;
+
+Filter::Filter()
+    : table_({params::number("radius", &radius_, {0, 8}, "half width of the kernel in voxels; 0: no filter", params::Invalidates::Plan),
+              params::number("passes", &passes_, {1, 4}, "how often the kernel is applied", params::Invalidates::Plan),
+              params::choice("weights", &weights_, {"surface", "gaussian"},
+                             "surface: by distance, area, normal, plane, and no wall between; gaussian: the paper's, unlit faces dropped",
+                             params::Invalidates::Plan)}) {}
+
+void Filter::declare(graph::Declaration& d) {
+  d.read("shown", "bit per face: in some pixel's stencil");
+  d.read("needed", "bit per face: shown, or within the filter's reach");
+  declareStructure(d);
+  d.read("gathered", "E_indirect of each face, W/m²; a: sky visibility");
+  d.read("cluster_radiosity", "only its version: the light changed");
+  d.read("row_start", "only its version: the rays changed");
+  d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m², filtered; a: sky visibility").persistent = true;
+  d.write("valid", Shape::buffer(4, Extent::of("faces") / 32), "bit per face").persistent = true;
+  d.readBack("status", Shape::buffer(4, 4), "faces filtered by this run, then dispatch arguments");
+  d.scratch("todo", Shape::buffer(4, Extent::of("faces") / 32), "bit per face");
+  d.scratch("list", Shape::buffer(4, Extent::of("faces")), "faces to filter");
+  d.scratch("scan", Shape::buffer(16, Extent::of("faces") / 32 + 1024), "compaction");
+  // Passes before the last run over all needed faces, back and forth between these.
+  if (radius_ > 0 && passes_ > 1) d.scratch("pass_a", Shape::buffer(16, Extent::of("faces")), "irradiance after odd passes");
+  if (radius_ > 0 && passes_ > 2) d.scratch("pass_b", Shape::buffer(16, Extent::of("faces")), "irradiance after even passes");
+}
+
+void Filter::prepare(graph::PrepareContext& context) {
+  constexpr auto kB = BindingType::StorageBuffer;
+  gpu::Device& device = context.device();
+  scan_ = std::make_unique<gpu::Scan>(device);
+  select_ = gpu::Pipeline(
+      device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/select.comp", .bindings = {kB, kB, kB}, .pushConstantBytes = 12});
+  filter_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/filter/filter.comp",
+                                                           .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                           .pushConstantBytes = 12,
+                                                           .constants = {{0, static_cast<uint32_t>(weights_)}}});
+}
+
+void Filter::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto faceCount = static_cast<uint32_t>(context.count("faces"));
+  const gpu::Buffer& valid = context.buffer("valid");
+  const gpu::Buffer& status = context.buffer("status");
+  if (faceCount == 0) {
+    commands.fill(status, 0);
+    return;
+  }
+  const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("row_start") || context.changed("faces");
+  if (stale) {
+    commands.fill(valid, 0);
+    commands.barrier();
+  }
+  struct {
+    uint32_t wordCount, faceCount, all;
+  } selectPush{(faceCount + 31) / 32, faceCount, 0};
+  commands.bind(select_, {context.buffer("shown"), valid, context.buffer("todo")});
+  commands.push(selectPush);
+  commands.dispatchItems(selectPush.wordCount, 64);
+  commands.barrier();
+  scan_->compactBits(commands, context.buffer("todo"), faceCount, context.buffer("list"), status, 64, context.buffer("scan"));
+  commands.barrier();
+  // The last pass runs over the list alone; those before it over every needed face (mark's reach covers them all).
+  const uint32_t passes = radius_ == 0 ? 1 : passes_;
+  for (uint32_t pass = 0; pass < passes; ++pass) {
+    const bool last = pass + 1 == passes;
+    const gpu::Buffer& from = pass == 0 ? context.buffer("gathered") : context.buffer(pass % 2 == 1 ? "pass_a" : "pass_b");
+    const gpu::Buffer& to = last ? context.buffer("irradiance") : context.buffer(pass % 2 == 0 ? "pass_a" : "pass_b");
+    bindStructure(context, filter_, {context.buffer("voxels"), context.buffer("needed"), context.buffer("list"), status, from, to});
+    struct {
+      uint32_t faceCount, radius, fromList;
+    } push{faceCount, radius_, last ? 1u : 0u};
+    commands.push(push);
+    if (last) {
+      commands.dispatchIndirect(status, 4);
+    } else {
+      commands.dispatchItems(faceCount, 64);
+      commands.barrier();
+    }
+  }
+}
+
+void Filter::frameDone(graph::RecordContext& context) {
+  uint32_t filtered = 0;
+  std::memcpy(&filtered, context.buffer("status").mapped(), sizeof(filtered));
+  context.reportStat("filtered_faces", filtered);
+}
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,40 @@
+// clustered_voxel.gather — irradiance of the voxel faces that the view needs, and of no others.
+//
+// reads   needed; visibility row_start, entries, chunk_table; clusters, cluster_radiosity, face_radiosity; faces, voxels, grid
+// writes  irradiance* vec4 × F  E_indirect, W/m²; a: sky visibility, the share of rays that left the scene; meaningful where valid
+//         valid*      bits × F  the face has been gathered under the present light
+//         status      u32 × 2   faces gathered by this run
+// runs    when the needed set, the light or the visibility changes; gathers faces that are needed and not yet valid
+// cost    Σ row lengths of the gathered faces
+// source  METHODS section 1, Gather. estimator=counted: E_s = Σ (m/M) B, rows sum to 1, a furnace is exact.
+//         estimator=differential: the paper's (4.4) Σ B_c A_c cosθ cosθ' / (π d²) over distinct visible clusters.
+#pragma once
+
+#include <memory>
+
+#include "engine/gpu/scan.h"
+#include "engine/graph/node.h"
+
+namespace radivox::clustered_voxel {
+
+class Gather : public graph::Node {
+ public:
+  static constexpr std::string_view kType = "clustered_voxel.gather";
+  enum class Estimator : uint32_t { Counted, Differential };
+  Gather();
+  std::string_view type() const override { return kType; }
+  params::Table& params() override { return table_; }
+  void declare(graph::Declaration& d) override;
+  void prepare(graph::PrepareContext& context) override;
+  void record(graph::RecordContext& context) override;
+  void frameDone(graph::RecordContext& context) override;
+
+ private:
+  Estimator estimator_ = Estimator::Counted;
+  bool lazy_ = true;
+  params::Table table_;
+  gpu::Pipeline select_, gather_;
+  std::unique_ptr<gpu::Scan> scan_;
+};
+
+}  // namespace radivox::clustered_voxel

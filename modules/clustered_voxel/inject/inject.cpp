@@ -1,0 +1,134 @@
+#include "modules/clustered_voxel/inject/inject.h"
+
+#include <bit>
+
+namespace radivox::clustered_voxel {
+
+using gpu::BindingType;
+using graph::Extent;
+using graph::Shape;
+
+namespace {
+constexpr uint32_t kGroup = 64;
+}
+
+Inject::Inject()
+    : table_({params::choice("method", &method_, {"splat", "points"},
+                             "splat: the flux of every shadow-map texel; points: the paper's 18 points about each voxel",
+                             params::Invalidates::Plan)}) {}
+
+void Inject::declare(graph::Declaration& d) {
+  lit_ = d.traits.punctualLightCount() + d.traits.emissiveTriangleCount > 0;
+  for (const char* name : {"scene.info", "scene.lights", "scene.shadow_views", "scene.vertices", "scene.indices"})
+    d.read(name, "lights and geometry");
+  d.read("shadow_depth", "depth of the nearest surface from each light, reversed z").optional = true;
+  d.read("shadow_triangle", "id + 1 of the nearest triangle from each light, 0: none").optional = true;
+  d.read("grid", "Grid");
+  d.read("occupancy", "two words a brick");
+  d.read("rank", "occupied voxels before the brick");
+  d.read("voxels", "packed coordinate of each voxel");
+  d.read("mask", "faces of each voxel");
+  d.read("first", "first face of each voxel");
+  d.read("faces", "Face");
+  d.read("clusters", "Cluster");
+  d.read("members", "face ids by cluster");
+  d.write("face_irradiance", Shape::buffer(12, Extent::of("faces")), "E_dir of each face, W/m²; 0: unlit");
+  d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected direct light, W/m²");
+  d.readBack("status", Shape::buffer(4, 4), "texels without a face; lit texels, low and high word; 0");
+  if (lit_ && method_ == Method::Splat)
+    d.scratch("flux", Shape::buffer(24, Extent::of("faces")), "fixed-point Φ max(0, n·e_f) a face, RGB");
+  if (lit_ && method_ == Method::Splat)
+    d.scratch("table", Shape::buffer(4, Extent::of("shadow_views") + 2), "fixed-point exponent, then the first texel of each view");
+}
+
+void Inject::prepare(graph::PrepareContext& context) {
+  gpu::Device& device = context.device();
+  constexpr auto kB = BindingType::StorageBuffer;
+  constexpr auto kI = BindingType::SampledImage;
+  if (!lit_ || !context.has("shadow_triangle")) {
+    lit_ = false;
+    return;
+  }
+  if (method_ == Method::Splat) {
+    splat_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
+                                                            .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                            .pushConstantBytes = 12});
+    resolve_ = gpu::Pipeline(
+        device, gpu::ComputePipelineInfo{
+                    .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB}, .pushConstantBytes = 4});
+  } else {
+    points_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/points.comp",
+                                                             .bindings = {kB, kB, kB, kI, kB, kB, kB, kB, kB, kB},
+                                                             .pushConstantBytes = 8});
+  }
+  clusters_ = gpu::Pipeline(
+      device,
+      gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/clusters.comp", .bindings = {kB, kB, kB, kB, kB}, .pushConstantBytes = 4});
+}
+
+void Inject::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto faceCount = static_cast<uint32_t>(context.count("faces"));
+  const auto clusterCount = static_cast<uint32_t>(context.count("clusters"));
+  const gpu::Buffer& irradiance = context.buffer("face_irradiance");
+  const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
+  const gpu::Buffer& status = context.buffer("status");
+  commands.fill(status, 0);
+  if (!lit_ || faceCount == 0) {
+    commands.fill(irradiance, 0);
+    commands.fill(radiosity, 0);
+    return;
+  }
+  struct {
+    uint32_t viewCount, lightCount, faceCount;  // faceCount 0: make the table instead
+  } push{static_cast<uint32_t>(context.count("shadow_views")), static_cast<uint32_t>(context.count("lights")), faceCount};
+
+  if (method_ == Method::Splat) {
+    const gpu::Buffer& flux = context.buffer("flux");
+    const gpu::Buffer& viewTable = context.buffer("table");
+    // At most: tiles need not fill their layers; the shader stops at the last view.
+    const uint64_t side = context.count("shadow_resolution");
+    const uint64_t texels = side * side * context.count("shadow_layers");
+    commands.fill(flux, 0);
+    commands.barrier();
+    commands.bind(splat_, {context.buffer("scene.info"), context.buffer("scene.lights"), context.buffer("scene.shadow_views"),
+                           context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("shadow_triangle"),
+                           context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"),
+                           context.buffer("first"), flux, viewTable, status});
+    // First one lane: the table. Then every texel.
+    push.faceCount = 0;
+    commands.push(push);
+    commands.dispatch(1);
+    commands.barrier();
+    push.faceCount = faceCount;
+    commands.push(push);
+    commands.dispatchItems(texels, kGroup);
+    commands.barrier();
+    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), flux, viewTable, irradiance});
+    commands.push(faceCount);
+    commands.dispatchItems(faceCount, kGroup);
+  } else {
+    commands.bind(points_, {context.buffer("scene.lights"), context.buffer("scene.shadow_views"), context.buffer("grid"),
+                            context.image("shadow_depth"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("voxels"),
+                            context.buffer("faces"), irradiance, status});
+    struct {
+      uint32_t faceCount, lightCount;
+    } pointsPush{faceCount, push.lightCount};
+    commands.push(pointsPush);
+    commands.dispatchItems(faceCount, kGroup);
+  }
+  commands.barrier();
+  commands.bind(clusters_, {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), irradiance, radiosity});
+  commands.push(clusterCount);
+  commands.dispatchItems(clusterCount, kGroup);
+}
+
+void Inject::frameDone(graph::RecordContext& context) {
+  uint32_t words[4];
+  std::memcpy(words, context.buffer("status").mapped(), sizeof(words));
+  const double lit = static_cast<double>(words[1]) + 4294967296.0 * static_cast<double>(words[2]);
+  context.reportStat("lit_texels", lit);
+  context.reportStat("lost_texels", static_cast<double>(words[0]));
+}
+
+}  // namespace radivox::clustered_voxel

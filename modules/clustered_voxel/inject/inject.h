@@ -1,0 +1,42 @@
+// clustered_voxel.inject — direct light arrives at voxel faces.
+//
+// reads   scene.lights, scene.shadow_views, scene.info, scene.vertices, scene.indices; shadow.depth, shadow.triangle (absent when no light
+//         casts from a point: then everything is 0); grid, occupancy, rank, mask, first, faces; labels, clusters, members
+// writes  face_irradiance   vec3 × F   E_dir, W/m²; 0: unlit
+//         cluster_radiosity vec3 × C   Σ a ρ E_dir / Σ a, W/m²: the light that clusters send back at once
+//         status            u32 × 4    texels that found no face (their flux is lost), low and high word of all lit texels, 0
+// runs    when lights, shadow maps, faces or clusters change
+// cost    splat: one lane a shadow texel, 3 to 9 additions each; points: 18 shadow look-ups a face and light
+// source  clustered_voxel_2022 section 4.4 (points); METHODS section 1, Inject (splat)
+//
+// method=splat: the flux of each shadow-map texel falls into the voxel faces of the surface it lands on, so energy is kept exactly
+// whatever the resolution: a texel that carries flux Φ lands on area dA with E dA = Φ, and so brings Φ max(0, n·e_f) to face f's
+// Σ area·max(0, n·e_f)·E, whatever the angle. Sums are 64-bit fixed point scaled to the lights' total flux: no order matters, nothing
+// wraps. method=points: the paper's 18 points 1.5 voxels about the voxel's centre, against the shadow map, with its neighbour test.
+#pragma once
+
+#include "engine/graph/node.h"
+
+namespace radivox::clustered_voxel {
+
+class Inject : public graph::Node {
+ public:
+  static constexpr std::string_view kType = "clustered_voxel.inject";
+  enum class Method : uint32_t { Splat, Points };
+
+  Inject();
+  std::string_view type() const override { return kType; }
+  params::Table& params() override { return table_; }
+  void declare(graph::Declaration& d) override;
+  void prepare(graph::PrepareContext& context) override;
+  void record(graph::RecordContext& context) override;
+  void frameDone(graph::RecordContext& context) override;
+
+ private:
+  Method method_ = Method::Splat;
+  params::Table table_;
+  bool lit_ = false;
+  gpu::Pipeline splat_, points_, resolve_, clusters_;
+};
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,46 @@
+#include "modules/clustered_voxel/shade/shade.h"
+
+#include "modules/clustered_voxel/structure.h"
+
+namespace radivox::clustered_voxel {
+
+using gpu::BindingType;
+using graph::Extent;
+using graph::Shape;
+
+Shade::Shade()
+    : table_({params::choice("interpolation", &interpolation_, {"trilinear", "nearest"},
+                             "trilinear over the faces about the pixel, or its own voxel's face alone", params::Invalidates::Plan)}) {}
+
+void Shade::declare(graph::Declaration& d) {
+  d.read("position", "relative world m, w: distance along the view axis, 0: sky");
+  d.read("normal", "unit shading normal");
+  declareStructure(d);
+  d.read("filtered", "E_indirect of each face, W/m²; a: sky visibility");
+  d.read("valid", "bit per face");
+  d.write("irradiance", Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height")),
+          "E_indirect, W/m²; a: sky visibility; 0 on the sky");
+}
+
+void Shade::prepare(graph::PrepareContext& context) {
+  constexpr auto kB = BindingType::StorageBuffer;
+  constexpr auto kI = BindingType::StorageImage;
+  shade_ = gpu::Pipeline(context.device(), gpu::ComputePipelineInfo{.shader = "clustered_voxel/shade/shade.comp",
+                                                                    .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kI},
+                                                                    .pushConstantBytes = 8,
+                                                                    .constants = {{0, static_cast<uint32_t>(interpolation_)}}});
+}
+
+void Shade::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const gpu::Image& out = context.image("irradiance");
+  struct {
+    uint32_t width, height;
+  } push{out.info().width, out.info().height};
+  bindStructure(context, shade_,
+                {context.image("position"), context.image("normal"), context.buffer("filtered"), context.buffer("valid"), out});
+  commands.push(push);
+  commands.dispatchItems(uint64_t{push.width} * push.height, 64);
+}
+
+}  // namespace radivox::clustered_voxel

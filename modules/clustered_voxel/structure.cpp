@@ -1,0 +1,32 @@
+#include "modules/clustered_voxel/structure.h"
+
+#include <array>
+#include <cassert>
+
+namespace radivox::clustered_voxel {
+
+void declareStructure(graph::Declaration& d) {
+  d.read("grid", "Grid");
+  d.read("occupancy", "two words a brick");
+  d.read("rank", "occupied voxels before the brick");
+  d.read("mask", "faces of each voxel");
+  d.read("first", "first face of each voxel");
+  d.read("faces", "Face");
+  d.read("voxels", "packed coordinate of each voxel");
+}
+
+void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline, std::initializer_list<gpu::BoundResource> rest) {
+  constexpr size_t kStructure = 6;
+  constexpr size_t kMost = 24;
+  assert(kStructure + rest.size() <= kMost);
+  const gpu::Buffer& grid = context.buffer("grid");
+  // A fixed array: recording allocates nothing.
+  std::array<gpu::BoundResource, kMost> all = {grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid,
+                                               grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid};
+  size_t i = 0;
+  for (const char* name : {"grid", "occupancy", "rank", "mask", "first", "faces"}) all[i++] = context.buffer(name);
+  for (const gpu::BoundResource& resource : rest) all[i++] = resource;
+  context.commands().bind(pipeline, std::span<const gpu::BoundResource>(all.data(), i));
+}
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,15 @@
+// The voxel structure that most stages look faces up in: ports and bindings 0…5, declared and bound the same way everywhere.
+// GLSL side: shaders/clustered_voxel/structure.glsl.
+#pragma once
+
+#include "engine/graph/node.h"
+
+namespace radivox::clustered_voxel {
+
+/// Reads grid, occupancy, rank, mask, first, faces, and voxels (not among the six bindings).
+void declareStructure(graph::Declaration& d);
+
+/// Binds the six, then `rest` from binding 6 on.
+void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline, std::initializer_list<gpu::BoundResource> rest);
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// Reflected direct light of each cluster: Σ a ρ E_dir / Σ a, over members in ascending order, so the bits never vary.
+#include "shared/dispatch.glsl"
+#include "shared/voxel_codec.h"
+#include "shared/voxel.h"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0, scalar) readonly buffer FacesBuffer { Face faces[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer ClusterBuffer { Cluster clusters[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer MemberBuffer { uint members[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer IrradianceBuffer { vec3 irradiance[]; };
+layout(set = 0, binding = 4, scalar) writeonly buffer RadiosityBuffer { vec3 radiosity[]; };
+layout(push_constant, scalar) uniform Push { uint clusterCount; };
+
+void main() {
+  uint c = radivoxItemIndex();
+  if (c >= clusterCount) return;
+  vec3 sum = vec3(0.0);
+  float area = 0.0;
+  for (uint i = 0; i < clusters[c].faceCount; ++i) {
+    uint s = members[clusters[c].firstMember + i];
+    sum += faces[s].area * decodeAlbedo(faces[s].albedo) * irradiance[s];
+    area += faces[s].area;
+  }
+  radiosity[c] = area > 0.0 ? sum / area : vec3(0.0);
+}

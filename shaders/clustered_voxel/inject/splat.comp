@@ -1,0 +1,141 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// Every shadow-map texel drops its flux into the voxel faces of the surface it lands on. See modules/clustered_voxel/inject/inject.h.
+#include "shared/dispatch.glsl"
+#include "shared/light.glsl"
+#include "shared/scene.h"
+
+#define RADIVOX_BIND_GRID 6
+#define RADIVOX_BIND_OCCUPANCY 7
+#define RADIVOX_BIND_RANK 8
+#define RADIVOX_BIND_FACE_MASK 9
+#define RADIVOX_BIND_FIRST_FACE 10
+#include "shared/voxel_lookup.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0, scalar) readonly buffer InfoBuffer { SceneInfo info; };
+layout(set = 0, binding = 1, scalar) readonly buffer LightBuffer { Light lights[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer ViewBuffer { ShadowView views[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer VertexBuffer { Vertex vertices[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer IndexBuffer { uint indices[]; };
+layout(set = 0, binding = 5) uniform usampler2DArray shadowTriangle;
+layout(set = 0, binding = 11, scalar) buffer FluxBuffer { uint flux[]; };        // 6 words a face: RGB × (low, high)
+layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; };  // [0] exponent as int; [1 + v] first texel of view v
+layout(set = 0, binding = 13, scalar) buffer StatusBuffer { uint status[]; };
+layout(push_constant, scalar) uniform Push {
+  uint viewCount;
+  uint lightCount;
+  uint faceCount;  // 0: make the table
+};
+
+
+void makeTable() {
+  // No light's flux can pass this: the sum in any face stays below 2^62 of the fixed-point unit.
+  float total = 0.0;
+  for (uint l = 0; l < lightCount; ++l) {
+    float peak = max(lights[l].intensity.x, max(lights[l].intensity.y, lights[l].intensity.z));
+    total += lights[l].type == kLightDirectional ? 0.0 : 12.566371 * peak;
+  }
+  uint texels = 0;
+  for (uint v = 0; v < viewCount; ++v) {
+    viewTable[1 + v] = texels;
+    uint count = views[v].resolution * views[v].resolution;
+    texels += count;
+    Light light = lights[views[v].light];
+    if (light.type == kLightDirectional) {
+      float peak = max(light.intensity.x, max(light.intensity.y, light.intensity.z));
+      total += peak * views[v].texelFlux * float(count);
+    }
+  }
+  viewTable[1 + viewCount] = texels;
+  int exponent = total > 0.0 && !isinf(total) ? 61 - int(ceil(log2(total))) : 0;
+  viewTable[0] = uint(clamp(exponent, -120, 120));
+}
+
+// 64-bit fixed point: exact, since a float's 24 bits lie somewhere within the 62.
+uvec2 toUnits(float value, int exponent) {
+  float high = floor(ldexp(value, exponent - 32));
+  float low = ldexp(value, exponent) - high * 4294967296.0;
+  return uvec2(uint(low), uint(high));
+}
+
+void addFlux(uint word, uvec2 value) {
+  if (value.x == 0u && value.y == 0u) return;
+  uint old = atomicAdd(flux[word], value.x);
+  uint carry = old + value.x < old ? 1u : 0u;
+  uint high = value.y + carry;
+  if (high != 0u) atomicAdd(flux[word + 1], high);
+}
+
+// Adds `power`·max(0, n·e_f) to the faces of the voxel at `coord`; the weight that found a face.
+float deposit(ivec3 coord, vec3 n, vec3 power, int exponent) {
+  uint voxel = voxelIndex(coord);
+  if (voxel == kNone) return 0.0;
+  float found = 0.0;
+  for (uint k = 0; k < 3; ++k) {
+    float w = abs(n[k]);
+    uint face = faceIndex(voxel, 2 * k + (n[k] < 0.0 ? 1u : 0u));
+    if (face == kNone || w == 0.0) continue;
+    found += w * w;
+    for (uint c = 0; c < 3; ++c) addFlux(face * 6 + 2 * c, toUnits(power[c] * w, exponent));
+  }
+  return found;
+}
+
+void main() {
+  uint i = radivoxItemIndex();
+  if (faceCount == 0u) {
+    if (i == 0u) makeTable();
+    return;
+  }
+  if (i >= viewTable[1 + viewCount]) return;
+  uint low = 0, high = viewCount;  // the last view whose first texel is ≤ i
+  while (high - low > 1) {
+    uint middle = (low + high) / 2;
+    if (viewTable[1 + middle] <= i) low = middle;
+    else high = middle;
+  }
+  ShadowView view = views[low];
+  Light light = lights[view.light];
+  uint local = i - viewTable[1 + low];
+  uvec2 texel = uvec2(local % view.resolution, local / view.resolution);
+  uint id = texelFetch(shadowTriangle, ivec3(view.offsetX + texel.x, view.offsetY + texel.y, view.layer), 0).x;
+  if (id == 0u) return;
+  uint triangle = id - 1;
+  vec3 a = vertices[indices[3 * triangle]].position;
+  vec3 b = vertices[indices[3 * triangle + 1]].position;
+  vec3 c = vertices[indices[3 * triangle + 2]].position;
+  vec3 n = cross(b - a, c - a);
+  float doubleArea = length(n);
+  if (!(doubleArea > 0.0)) return;
+  n /= doubleArea;
+
+  // The texel centre's ray meets the triangle's plane: exact, where the stored depth is rounded.
+  vec2 ndc = (vec2(texel) + 0.5) / float(view.resolution) * 2.0 - 1.0;
+  vec3 origin, d;
+  shadowRay(view, light, ndc, origin, d);
+  float slope = dot(n, d);
+  if (slope == 0.0) return;
+  float t = dot(n, a - origin) / slope;
+  vec3 p = origin + t * d;
+  if (slope > 0.0) n = -n;  // the side that the light reaches
+  vec3 power = shadowTexelFlux(view, light, d, p);
+  if (!(max(power.x, max(power.y, power.z)) > 0.0)) return;
+
+  uint old = atomicAdd(status[1], 1u);
+  if (old == 0xffffffffu) atomicAdd(status[2], 1u);
+  int exponent = int(viewTable[0]);
+  vec3 q = toGridSpace(grid, p);
+  ivec3 coord = ivec3(floor(q));
+  if (deposit(coord, n, power, exponent) > 0.5) return;
+  // On the border between two voxels rounding may choose the one that has no such face: try the nearer neighbours.
+  vec3 inside = q - floor(q);
+  for (int k = 0; k < 3; ++k) {
+    ivec3 step = ivec3(0);
+    step[k] = inside[k] < 0.5 ? -1 : 1;
+    if (min(inside[k], 1.0 - inside[k]) < 0.01 && deposit(coord + step, n, power, exponent) > 0.5) return;
+  }
+  atomicAdd(status[0], 1u);
+}

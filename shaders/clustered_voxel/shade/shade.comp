@@ -1,0 +1,54 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// One lane a pixel: E(x, n) = Σ_k n_k² E_k, each E_k a weighted mean over the faces of direction sign(n_k) e_k about x.
+#include "shared/dispatch.glsl"
+#include "clustered_voxel/structure.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint kInterpolation = 0;  // Shade::Interpolation
+
+layout(set = 0, binding = 6, rgba32f) readonly uniform image2D positionImage;
+layout(set = 0, binding = 7, rgba32f) readonly uniform image2D normalImage;
+layout(set = 0, binding = 8, scalar) readonly buffer FilteredBuffer { vec4 filtered[]; };
+layout(set = 0, binding = 9, scalar) readonly buffer ValidBuffer { uint valid[]; };
+layout(set = 0, binding = 10, rgba32f) writeonly uniform image2D irradianceImage;
+layout(push_constant, scalar) uniform Push {
+  uint width;
+  uint height;
+};
+
+vec4 sums[4];  // per axis; the fourth is the fallback of visitReceivers
+float totals[4];
+void take(uint s, float weight, uint k) {
+  if ((valid[s >> 5] & (1u << (s & 31u))) == 0u) return;
+  sums[k] += weight * filtered[s];
+  totals[k] += weight;
+}
+#define RECEIVER_VISIT(face, weight, k) take(face, weight, k);
+#include "clustered_voxel/receiver.glsl"
+
+void main() {
+  uint i = radivoxItemIndex();
+  if (i >= width * height) return;
+  ivec2 pixel = ivec2(i % width, i / width);
+  vec4 position = imageLoad(positionImage, pixel);
+  vec4 result = vec4(0.0);
+  if (position.w != 0.0) {
+    vec3 n = imageLoad(normalImage, pixel).xyz;
+    for (uint k = 0; k < 4; ++k) {
+      sums[k] = vec4(0.0);
+      totals[k] = 0.0;
+    }
+    visitReceivers(toGridSpace(grid, position.xyz), n, kInterpolation == 0);
+    float mixed = 0.0;
+    for (uint k = 0; k < 3; ++k)
+      if (totals[k] > 0.0) {
+        result += n[k] * n[k] * sums[k] / totals[k];
+        mixed += n[k] * n[k];
+      }
+    if (mixed > 0.0) result /= mixed;
+    else if (totals[3] > 0.0) result = sums[3] / totals[3];
+  }
+  imageStore(irradianceImage, pixel, result);
+}
