@@ -60,6 +60,13 @@ struct LightSetup {
   uint32_t emitterSampleCount = 0; ///< 0 with emissive triangles: emitters light through rays
   std::vector<std::string> notes;  ///< what had to be lowered to fit, one line each
 };
+/// imports() and counts() of a GpuScene with a camera of this size, without a device: for printing plans.
+struct SceneShapes {
+  std::vector<graph::Import> imports;
+  graph::Counts counts;
+};
+SceneShapes describeShapes(const Scene& scene, const LightOptions& options, uint32_t width, uint32_t height);
+
 /// Scene::traits() with emittersByRays as these options have it.
 Traits traitsFor(const Scene& scene, const LightOptions& options);
 LightSetup setUpLights(const Scene& scene, const LightOptions& options);
