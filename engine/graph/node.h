@@ -7,10 +7,15 @@
 // Sizes that only the GPU knows (how many voxels, faces, clusters) are *counts*: a node publishes a count from a word of one of its
 // output buffers; ports of later nodes are shaped by it. The executor ends a submission after the publishing node, reads the word,
 // allocates, and goes on. Once counts are known and nothing changes there are no such stops.
+//
+// A count may be 0: its buffers then have 16 bytes, the nodes run all the same and must cope (Commands::dispatchItems records nothing).
+// A node without any Write, Modify or ReadBack port works for the world outside the graph (a file): it is never culled for want of readers.
+// A node that modifies a resource makes the writer of the version before it run again too, or it would modify its own result.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +49,7 @@ struct Port {
   std::string name;
   Access access = Access::Read;
   Shape shape;            ///< outputs and scratch; ignored for Read (the producer's shape holds)
+  std::optional<ResourceKind> kind;  ///< Read and Modify: what must come in, checked while compiling; unset: anything
   std::string meaning;    ///< type, unit, meaning of 0: "E_dir per face, W/m², 0: unlit"
   uint32_t use = UseCompute | UseTransfer;
   bool optional = false;  ///< Read: may stay unconnected. Write: made only when somebody reads it
@@ -56,8 +62,8 @@ struct Port {
 /// Filled by Node::declare. Port order is print order.
 class Declaration {
  public:
-  Declaration(const scene::Traits& traits, const scene::Request& request, const gpu::Capabilities& capabilities)
-      : traits(traits), request(request), capabilities(capabilities) {}
+  Declaration(const scene::Traits& traits_, const scene::Request& request_, const gpu::Capabilities& capabilities_)
+      : traits(traits_), request(request_), capabilities(capabilities_) {}
   const scene::Traits& traits;
   const scene::Request& request;
   const gpu::Capabilities& capabilities;
@@ -69,7 +75,8 @@ class Declaration {
   Port& scratch(std::string name, Shape shape, std::string meaning, uint32_t use = UseCompute | UseTransfer);
   Port& readBack(std::string name, Shape shape, std::string meaning);
 
-  /// Publishes the 32-bit word at `byteOffset` of output `port` as count `name` after each run of this node.
+  /// Publishes the 32-bit word at `byteOffset` of output `port` as count `name` after each run of this node. An empty `port`: the
+  /// (host-paced) node gives the value itself, RecordContext::setCount. Every count that shapes a port must be declared by its publisher.
   void publishCount(std::string name, std::string port, uint64_t byteOffset);
   /// The node works in host-paced steps (Node::stepCount, Node::stepDone): each step is a submission of its own.
   void hostPaced() { hostPaced_ = true; }

@@ -19,6 +19,8 @@ struct PlannedResource {
   bool persistent = false;
   bool growable = false;
   bool hostVisible = false;   ///< ReadBack
+  std::string meaning;        ///< of its first writer's port
+  uint32_t versionCount = 1;  ///< links of the version chain: 1, or 1 + the number of Modify ports
   bool scratch = false;
   bool output = false;
   uint32_t firstUse = 0;      ///< positions in Plan::steps, inclusive
@@ -30,6 +32,7 @@ struct PlannedResource {
 struct PlannedPort {
   std::string name;
   ResourceId resource = kNoResource;  ///< kNoResource: optional and absent
+  uint32_t version = 0;               ///< link of the resource's version chain that is read or written; Modify reads version − 1
   Access access = Access::Read;
   uint32_t use = 0;
   std::string meaning;
@@ -45,6 +48,11 @@ struct PlannedBarrier {
 struct PlannedStep {
   uint32_t node;     ///< index in Graph::nodes()
   uint32_t segment;  ///< a submission ends where the segment number rises (counts must be read back)
+  std::string type;
+  bool hostPaced = false;
+  bool everyFrame = false;
+  std::vector<Declaration::PublishedCount> counts;  ///< that this node publishes
+  std::vector<std::string> neededCounts;            ///< counts in the shapes of its ports, each once
   std::vector<PlannedPort> ports;
   std::vector<PlannedBarrier> barriers;  ///< as if every step ran; the executor narrows them to what did run
 };
@@ -62,7 +70,6 @@ struct Plan {
   std::vector<PlannedStep> steps;  ///< in order
   std::vector<PlannedResource> resources;
   std::vector<CulledNode> culled;
-  std::vector<Declaration::PublishedCount> counts;
   std::vector<std::string> nodeNames;  ///< of Graph::nodes()
   uint32_t segmentCount = 0;
 

@@ -8,13 +8,28 @@
 #include <string_view>
 #include <vector>
 
-namespace radivox::graph {
-class Node;
-}
+#include "engine/graph/node.h"
+
+// Count up with every change of a class in engine/graph/node.h, resource.h, engine/params, engine/plugin, engine/gpu or engine/error.h.
+#define RADIVOX_ABI_VERSION 1
+#define RADIVOX_TEXT_(x) #x
+#define RADIVOX_TEXT(x) RADIVOX_TEXT_(x)
+#if defined(_LIBCPP_VERSION)
+#define RADIVOX_ABI_LIBRARY "libc++ " RADIVOX_TEXT(_LIBCPP_VERSION)
+#elif defined(__GLIBCXX__)
+#define RADIVOX_ABI_LIBRARY "libstdc++ " RADIVOX_TEXT(__GLIBCXX__) " cxx11=" RADIVOX_TEXT(_GLIBCXX_USE_CXX11_ABI)
+#else
+#define RADIVOX_ABI_LIBRARY "unknown standard library"
+#endif
+#ifndef RADIVOX_ABI_TAG  // a build may give another (tests of the refusal)
+#define RADIVOX_ABI_TAG \
+  "radivox abi " RADIVOX_TEXT(RADIVOX_ABI_VERSION) ", compiler " __VERSION__ ", " RADIVOX_ABI_LIBRARY ", C++ " RADIVOX_TEXT(__cplusplus)
+#endif
 
 namespace radivox::plugin {
 
-/// Changes whenever a class that crosses the boundary changes; also carries compiler and standard library.
+/// The tag this engine was built with. It changes whenever a class that crosses the boundary changes (RADIVOX_ABI_VERSION, counted by
+/// hand), and carries compiler and standard library. A module carries the tag of *its* build: the macro, not this function.
 std::string_view abiTag();
 
 struct NodeType {
@@ -53,8 +68,13 @@ struct ModuleEntry {
 }  // namespace radivox::plugin
 
 /// In one source file of a module:  RADIVOX_MODULE(registerClusteredVoxel)
-#define RADIVOX_MODULE(function)                                                                                 \
-  extern "C" __attribute__((visibility("default"))) const radivox::plugin::ModuleEntry* radivoxModule() {       \
-    static const radivox::plugin::ModuleEntry entry{radivox::plugin::abiTag().data(), &(function)};              \
-    return &entry;                                                                                               \
+/// Defines the entry point only where the module becomes a library of its own (radivox_add_module), so that many link into one program.
+#ifdef RADIVOX_SHARED_MODULE
+#define RADIVOX_MODULE(function)                                                                        \
+  extern "C" __attribute__((visibility("default"))) const radivox::plugin::ModuleEntry* radivoxModule() { \
+    static const radivox::plugin::ModuleEntry entry{RADIVOX_ABI_TAG, &(function)};                       \
+    return &entry;                                                                                      \
   }
+#else
+#define RADIVOX_MODULE(function) static_assert(true)
+#endif

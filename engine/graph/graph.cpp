@@ -1,0 +1,61 @@
+#include "engine/graph/graph.h"
+
+#include <algorithm>
+
+#include "engine/error.h"
+
+namespace radivox::graph {
+namespace {
+
+Endpoint parseEndpoint(std::string_view text) {
+  const size_t dot = text.find('.');
+  if (dot == std::string_view::npos || dot == 0 || dot + 1 == text.size()) {
+    throw Error(ErrorCode::BadInput, "\"" + std::string(text) + "\" is no endpoint; write node.port");
+  }
+  return {std::string(text.substr(0, dot)), std::string(text.substr(dot + 1))};
+}
+
+}  // namespace
+
+Node& Graph::add(std::string name, std::unique_ptr<Node> node) {
+  if (name.empty() || name.find('.') != std::string::npos) {
+    throw Error(ErrorCode::BadInput, "\"" + name + "\" cannot name a node; use a name without dots");
+  }
+  if (find(name) != nullptr) throw Error(ErrorCode::BadInput, "two nodes are named " + name + "; rename one");
+  nodes_.push_back({std::move(name), std::move(node)});
+  return *nodes_.back().node;
+}
+
+void Graph::connect(std::string_view from, std::string_view to) { edges_.push_back({parseEndpoint(from), parseEndpoint(to)}); }
+
+void Graph::output(std::string_view endpoint) {
+  Endpoint parsed = parseEndpoint(endpoint);
+  const auto same = [&](const Endpoint& o) { return o.node == parsed.node && o.port == parsed.port; };
+  if (std::none_of(outputs_.begin(), outputs_.end(), same)) outputs_.push_back(std::move(parsed));
+}
+
+Node* Graph::find(std::string_view name) const {
+  for (const Entry& entry : nodes_) {
+    if (entry.name == name) return entry.node.get();
+  }
+  return nullptr;
+}
+
+params::Invalidates Graph::set(std::string_view nodeParam, std::string_view value) {
+  const size_t dot = nodeParam.find('.');
+  if (dot == std::string_view::npos) {
+    throw Error(ErrorCode::BadInput, "\"" + std::string(nodeParam) + "\" names no parameter; write node.param=value");
+  }
+  const std::string_view name = nodeParam.substr(0, dot);
+  Node* node = find(name);
+  if (node == nullptr) {
+    std::vector<std::string> names;
+    for (const Entry& entry : nodes_) names.push_back(entry.name);
+    const std::string near = params::nearestName(name, names);
+    throw Error(ErrorCode::BadInput, std::string(nodeParam) + ": no node is named " + std::string(name) +
+                                         (near.empty() ? "; see `radivox graph` for the nodes" : "; did you mean " + near + "?"));
+  }
+  return node->params().set(name, nodeParam.substr(dot + 1), value);
+}
+
+}  // namespace radivox::graph
