@@ -1,0 +1,280 @@
+// End to end: whole renders against answers known in closed form, and what must hold of every render.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "engine/scene/builtin.h"
+#include "shaders/shared/voxel_codec.h"
+#include "tests/oracles/gpu_fixture.h"
+#include "tests/oracles/pipeline.h"
+
+namespace radivox {
+namespace {
+
+using oracle::Pipeline;
+using oracle::PipelineOptions;
+
+PipelineOptions small(uint32_t resolution) {
+  PipelineOptions options;
+  options.settings = {{"voxelize.resolution", std::to_string(resolution)}};
+  return options;
+}
+
+const char* const kSceneNodes[] = {"voxelize", "index", "faces", "surface", "cluster", "members", "visibility", "transfer"};
+const char* const kLightNodes[] = {"shadow_map", "inject", "bounce"};
+const char* const kViewNodes[] = {"gbuffer", "direct", "mark", "gather", "filter", "shade"};
+
+TEST(Render, SecondFrameRunsNothingButEveryFrameNodes) {
+  Pipeline p(oracle::testDevice(), scene::makeBuiltin("cornell_point"), small(24));
+  p.run();
+  const auto before = p.executor->stats();
+  p.run();
+  const auto after = p.executor->stats();
+  for (size_t i = 0; i < before.nodes.size(); ++i) {
+    EXPECT_EQ(before.nodes[i].runCount, 1u) << before.nodes[i].name;
+    EXPECT_EQ(after.nodes[i].runCount, 1u) << after.nodes[i].name << " ran again with nothing changed";
+  }
+}
+
+TEST(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
+  scene::Scene s = scene::makeBuiltin("cornell_point");
+  Pipeline p(oracle::testDevice(), s, small(24));
+  p.run();
+  const double first = p.figure("gather", "gathered_faces");
+  EXPECT_GT(first, 0);
+  EXPECT_EQ(first, p.figure("mark", "needed_faces"));
+  const auto validBefore = p.buffer<uint32_t>("gather.valid");
+  // A small turn: most of what is seen has been seen before.
+  scene::CameraDescription camera = s.cameras.front();
+  camera.orientation = glm::normalize(camera.orientation * glm::angleAxis(0.05f, glm::vec3(0, 1, 0)));
+  p.setCamera(camera);
+  p.run();
+  for (const char* node : kSceneNodes) EXPECT_EQ(p.runCount(node), 1u) << node;
+  for (const char* node : kLightNodes) EXPECT_EQ(p.runCount(node), 1u) << node;
+  for (const char* node : kViewNodes) EXPECT_EQ(p.runCount(node), 2u) << node;
+  const double second = p.figure("gather", "gathered_faces");
+  const auto needed = p.buffer<uint32_t>("mark.needed");
+  double fresh = 0;
+  for (size_t i = 0; i < needed.size(); ++i) fresh += std::popcount(needed[i] & ~validBefore[i]);
+  EXPECT_EQ(second, fresh);
+  EXPECT_LT(second, 0.5 * first);
+}
+
+TEST(Render, LightMoveTracesNothingAgain) {
+  scene::Scene s = scene::makeBuiltin("cornell_point");
+  Pipeline p(oracle::testDevice(), s, small(24));
+  p.run();
+  const image::Image before = p.picture("composite.color");
+  for (auto& light : s.lights) light.position.x += 0.1f;
+  p.setLights(s);
+  p.run();
+  for (const char* node : kSceneNodes) EXPECT_EQ(p.runCount(node), 1u) << node;
+  for (const char* node : kLightNodes) EXPECT_EQ(p.runCount(node), 2u) << node;
+  EXPECT_EQ(p.runCount("gbuffer"), 1u);
+  EXPECT_EQ(p.runCount("mark"), 1u);
+  EXPECT_EQ(p.figure("gather", "gathered_faces"), p.figure("mark", "needed_faces"));
+  EXPECT_NE(before.data, p.picture("composite.color").data);
+  // What a light move leaves equals what a fresh start gives, bit for bit.
+  Pipeline fresh(oracle::testDevice(), s, small(24));
+  fresh.run();
+  EXPECT_EQ(fresh.picture("composite.color").data, p.picture("composite.color").data);
+}
+
+TEST(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
+  PipelineOptions lazy = small(24), all = small(24);
+  lazy.outputs = all.outputs = {"composite.color", "gather.irradiance", "gather.valid"};
+  all.settings.push_back({"gather.lazy", "off"});
+  Pipeline a(oracle::testDevice(), scene::makeBuiltin("cornell_point"), lazy);
+  Pipeline b(oracle::testDevice(), scene::makeBuiltin("cornell_point"), all);
+  a.run();
+  b.run();
+  const auto valid = a.buffer<uint32_t>("gather.valid");
+  const auto some = a.buffer<glm::vec4>("gather.irradiance");
+  const auto every = b.buffer<glm::vec4>("gather.irradiance");
+  EXPECT_LT(a.figure("gather", "gathered_faces"), b.figure("gather", "gathered_faces"));
+  EXPECT_EQ(b.figure("gather", "gathered_faces"), static_cast<double>(b.count("faces")));
+  for (size_t s = 0; s < a.count("faces"); ++s)
+    if ((valid[s / 32] >> (s % 32)) & 1u) ASSERT_EQ(some[s], every[s]) << "face " << s;
+  EXPECT_EQ(a.picture("composite.color").data, b.picture("composite.color").data);
+}
+
+TEST(Render, SameBitsTwice) {
+  for (const char* name : {"cornell", "two_rooms"}) {
+    PipelineOptions options = small(20);
+    options.outputs = {"composite.color",  "surface.faces",     "cluster.labels",         "visibility.row_start", "transfer.row_start",
+                       "transfer.sky",     "inject.face_irradiance", "bounce.face_radiosity", "gather.irradiance", "filter.irradiance",
+                       "voxelize.occupancy", "index.voxels",    "members.members"};
+    Pipeline a(oracle::testDevice(), scene::makeBuiltin(name), options);
+    Pipeline b(oracle::testDevice(), scene::makeBuiltin(name), options);
+    a.run();
+    b.run();
+    for (const std::string& output : options.outputs) {
+      if (output == "composite.color") continue;
+      EXPECT_EQ(a.buffer<uint32_t>(output), b.buffer<uint32_t>(output)) << name << " " << output;
+    }
+    for (const char* grown : {"visibility.entries", "transfer.entries"}) {
+      const auto x = a.executor->findGrown(grown), y = b.executor->findGrown(grown);
+      ASSERT_EQ(x.size(), y.size());
+      for (size_t i = 0; i < x.size(); ++i)
+        EXPECT_EQ(gpu::download(oracle::testDevice(), *x[i]), gpu::download(oracle::testDevice(), *y[i])) << name << " " << grown << i;
+    }
+    EXPECT_EQ(a.picture("composite.color").data, b.picture("composite.color").data) << name;
+  }
+}
+
+// Every wall of a closed box emits πL_e = 1 − ρ and reflects ρ, so E = 1 everywhere inside: ρ of it has been reflected before.
+TEST(Render, FurnaceIsExactAtEveryFace) {
+  for (const double albedo : {0.0, 0.5, 0.9, 0.99}) {
+    PipelineOptions options = small(16);
+    options.settings.push_back({"gather.lazy", "off"});
+    options.settings.push_back({"bounce.residual", "1e-7"});
+    options.outputs = {"composite.color", "gather.irradiance", "bounce.face_radiosity", "surface.faces", "index.voxels", "voxelize.grid"};
+    Pipeline p(oracle::testDevice(), scene::makeBuiltin("furnace", {{"albedo", std::to_string(albedo)}}), options);
+    p.run();
+    const auto grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
+    const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+    const auto voxels = p.buffer<uint32_t>("index.voxels", p.count("voxels"));
+    const auto irradiance = p.buffer<glm::vec4>("gather.irradiance");
+    // ρ as the faces hold it, in 16 bits.
+    const double kept = std::round(albedo * 65535.0) / 65535.0;
+    const double expected = kept * (1.0 - albedo) / (1.0 - kept);
+    const glm::vec3 middle = glm::vec3(grid.size) * 0.5f;
+    size_t inside = 0, wrong = 0;
+    double worst = 0;
+    for (size_t s = 0; s < faces.size(); ++s) {
+      const uint32_t f = faces[s].key & 7u;
+      const glm::vec3 at = glm::vec3(shared::unpackVoxel(voxels[faces[s].key >> 3])) + shared::decodePosition(faces[s].position);
+      if (glm::dot(shared::faceVector(f), middle - at) < 0.f) continue;  // the box's outer side
+      ++inside;
+      const double error = std::abs(double{irradiance[s].x} - expected);
+      worst = std::max(worst, error);
+      wrong += error > 1e-5;
+    }
+    EXPECT_GT(inside, 6u * 13 * 13);
+    EXPECT_EQ(wrong, 0u) << "albedo " << albedo << ", of " << inside << " faces, worst " << worst;
+  }
+}
+
+TEST(Render, SunOnAPlaneInjectsItsCosine) {
+  scene::Scene s = scene::makeBuiltin("plane");
+  s.lights.clear();
+  scene::PunctualLight sun;
+  sun.type = shared::kLightDirectional;
+  sun.direction = glm::normalize(glm::vec3(0.62f, -1.f, 0.19f));
+  sun.intensity = glm::vec3(10.f, 5.f, 1.f);
+  s.lights.push_back(sun);
+  PipelineOptions options = small(32);
+  options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "voxelize.grid"};
+  Pipeline p(oracle::testDevice(), s, options);
+  p.run();
+  const auto grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
+  const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+  const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance");
+  const double cosine = -double{sun.direction.y};
+  double flux = 0, area = 0, worst = 0;
+  for (size_t i = 0; i < faces.size(); ++i) {
+    const uint32_t f = faces[i].key & 7u;
+    if (f == 3u) EXPECT_EQ(irradiance[i].x, 0.f) << "light on the underside";
+    if (f != 2u) continue;
+    flux += double{faces[i].area} * grid.h * grid.h * irradiance[i].x;
+    area += double{faces[i].area} * grid.h * grid.h;
+    if (faces[i].area > 0.99f) worst = std::max(worst, std::abs(double{irradiance[i].x} / (10.0 * cosine) - 1.0));
+    EXPECT_NEAR(irradiance[i].y, 0.5 * irradiance[i].x, 1e-4 * irradiance[i].x);
+  }
+  EXPECT_NEAR(flux / area, 10.0 * cosine, 0.002 * 10.0 * cosine);
+  EXPECT_LT(worst, 0.04);  // a voxel holds some thousand texels here; their count is what it is
+  EXPECT_EQ(p.figure("inject", "lost_texels"), 0.0);
+}
+
+TEST(Render, PointLightInABoxLosesNoFlux) {
+  scene::Scene s = scene::makeBuiltin("box");
+  s.lights.clear();
+  scene::PunctualLight lamp;
+  lamp.type = shared::kLightPoint;
+  const scene::Traits traits = s.traits();
+  lamp.position = glm::mix(traits.boundsMin, traits.boundsMax, glm::vec3(0.4f, 0.55f, 0.7f));
+  lamp.intensity = glm::vec3(3.f);
+  s.lights.push_back(lamp);
+  for (const uint32_t resolution : {16u, 41u}) {
+    PipelineOptions options = small(resolution);
+    options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "voxelize.grid"};
+    Pipeline p(oracle::testDevice(), s, options);
+    p.run();
+    const auto grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
+    const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+    const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance");
+    double flux = 0;
+    for (size_t i = 0; i < faces.size(); ++i) flux += double{faces[i].area} * grid.h * grid.h * irradiance[i].x;
+    EXPECT_NEAR(flux, 12.566370614 * 3.0, 0.002 * 37.7) << "N = " << resolution;  // all walls are axis-aligned: each texel counts once
+  }
+}
+
+// Light from 1e9 down to 1e-6 W/sr: fixed-point sums follow the lights' range.
+TEST(Render, IrradianceScalesWithTheLight) {
+  std::vector<float> first;
+  for (const float scale : {1.f, 1e9f, 1e-6f}) {
+    scene::Scene s = scene::makeBuiltin("cornell_point");
+    for (auto& light : s.lights) light.intensity *= scale;
+    Pipeline p(oracle::testDevice(), s, small(16));
+    p.run();
+    const image::Image picture = p.picture("composite.color");
+    if (first.empty()) first = picture.data;
+    double worst = 0;
+    for (size_t i = 0; i < first.size(); ++i)
+      worst = std::max(worst, std::abs(double{picture.data[i]} / scale - first[i]) / (1e-3 + first[i]));
+    EXPECT_LT(worst, 1e-3) << scale;
+  }
+}
+
+TEST(Render, ThinWallKeepsItsDarkSideDark) {
+  PipelineOptions options = small(32);
+  options.settings.push_back({"gather.lazy", "off"});
+  options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "index.voxels", "voxelize.grid"};
+  const scene::Scene s = scene::makeBuiltin("thin_wall");
+  ASSERT_EQ(s.lights.size(), 1u);
+  Pipeline p(oracle::testDevice(), s, options);
+  p.run();
+  const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+  const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance");
+  double lit = 0, dark = 0;
+  for (size_t i = 0; i < faces.size(); ++i) {
+    const uint32_t f = faces[i].key & 7u;
+    glm::vec3 axis(0.f);
+    axis[static_cast<int>(f >> 1)] = (f & 1u) != 0u ? -1.f : 1.f;
+    const bool facesLight = glm::dot(axis, s.lights[0].direction) < 0.f;
+    (facesLight ? lit : dark) += double{faces[i].area} * irradiance[i].x;
+  }
+  EXPECT_GT(lit, 0);
+  EXPECT_EQ(dark, 0);
+}
+
+TEST(Render, NoLightIsBlackAndEmptyIsSky) {
+  scene::Scene dark = scene::makeBuiltin("cornell_point");
+  dark.lights.clear();
+  Pipeline p(oracle::testDevice(), dark, small(16));
+  p.run();
+  for (float v : p.picture("composite.color").data) ASSERT_EQ(v, 0.f);
+
+  scene::Scene empty = scene::makeBuiltin("empty");
+  empty.skyRadiance = glm::vec3(0.25f, 0.5f, 1.f);
+  Pipeline q(oracle::testDevice(), empty, small(16));
+  q.run();
+  const image::Image sky = q.picture("composite.color");
+  EXPECT_EQ(sky.at(5, 5, 0), 0.25f);
+  EXPECT_EQ(sky.at(5, 5, 2), 1.f);
+}
+
+TEST(Render, ZeroBouncesLeaveTheMethodOut) {
+  PipelineOptions options = small(16);
+  options.bounces = 0;
+  Pipeline p(oracle::testDevice(), scene::makeBuiltin("cornell_point"), options);
+  p.run();
+  EXPECT_EQ(p.executor->findBuffer("voxelize.occupancy"), nullptr);
+  EXPECT_GT(image::meanOf(p.picture("composite.color")), 0.0);
+}
+
+TEST(Render, ValidationIsSilent) { EXPECT_EQ(oracle::testDevice().validationMessageCount(), 0u); }
+
+}  // namespace
+}  // namespace radivox
