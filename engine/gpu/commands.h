@@ -1,7 +1,8 @@
 // A thin recorder over a VkCommandBuffer (ours or a host's): bind, push, dispatch, draw, barrier. Allocates nothing on the
-// push-descriptor path; the fallback takes sets from a pool that grows only in DescriptorPool::reserve.
+// push-descriptor path; the fallback takes sets from a pool that grows by 1024 when empty.
 #pragma once
 
+#include <array>
 #include <type_traits>
 #include <variant>
 
@@ -19,15 +20,20 @@ class DescriptorPool {
   VkDescriptorSet take(const Pipeline& pipeline);  ///< grows by a pool of 1024 sets when empty
   void reset();
   VkSampler nearestSampler() const { return sampler_; }
+  /// What null resources are bound to: zeros, never read or written by a shader that keeps its word.
+  const Buffer& placeholder() const { return placeholderBuffer_; }
+  const Image& placeholder(ImageKind kind) const;
 
  private:
   Device& device_;
   std::vector<VkDescriptorPool> pools_;
   size_t current_ = 0;
   VkSampler sampler_ = VK_NULL_HANDLE;
+  Buffer placeholderBuffer_;
+  std::array<Image, 6> placeholderImages_;  ///< TexelType × (2D, 2D array)
 };
 
-/// What goes into one binding. A null buffer or image is allowed only where the shader never reads it.
+/// What goes into one binding. Offsets are multiples of 256. A null buffer or image is allowed only where the shader never reads it.
 struct BoundResource {
   BoundResource(const Buffer& b) : buffer(&b) {}  // NOLINT: implicit on purpose, so that lists of bindings read plainly
   BoundResource(const Image& i) : image(&i) {}    // NOLINT
@@ -73,9 +79,13 @@ class Commands {
     bool clear = true;
     VkClearValue clearValue{};
   };
-  /// Dynamic rendering with viewport and scissor set to the extent (y down, as Vulkan has it).
+  /// Dynamic rendering with viewport and scissor set to the extent (y down, as Vulkan has it). Without attachments the extent alone
+  /// decides which pixels are covered. Colour images come to layout GENERAL, depth images to DEPTH_ATTACHMENT_OPTIMAL, unless they
+  /// are in a layout that can be rendered to already.
   void beginRendering(VkExtent2D extent, std::span<const Attachment> color, const Attachment* depth);
   void endRendering();
+  /// Inside rendering: viewport and scissor of a tile, in texels.
+  void setViewport(int32_t x, int32_t y, uint32_t width, uint32_t height);
 
   static constexpr uint32_t kMaxGroupsX = 32768;
 

@@ -3,6 +3,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -38,18 +39,25 @@ struct Capabilities {
   uint32_t maxImageDimension2D = 0;
   uint32_t maxImageArrayLayers = 0;
   uint32_t maxComputeWorkGroupCount = 0;  ///< along x
+  VkDeviceSize maxUniformBufferRange = 0;
+  VkDeviceSize maxMemoryAllocationSize = 0;
+  VkDeviceSize storageOffsetAlignment = 0;  ///< of BoundResource::offset
+  bool depthClamp = false;
+  bool layerFromVertexShader = false;  ///< gl_Layer may be written without a geometry shader
+  uint32_t timestampValidBits = 0;
 };
 
 struct DeviceOptions {
-  int index = -1;                 ///< physical device; −1: the best (discrete, integrated, virtual, CPU)
-  bool validation = false;        ///< Khronos layer with synchronization validation; messages go to `onMessage`
-  std::string pipelineCacheFile;  ///< empty: none. Written to a temporary name and renamed when the device closes
-  bool pushDescriptors = true;    ///< false forces the descriptor-pool fallback (tests)
-  bool conservativeRasterization = true;  ///< false hides the hardware extension (tests)
+  int index = -1;                                     ///< physical device; −1: the best (discrete, integrated, virtual, CPU)
+  bool validation = false;                            ///< Khronos layer with synchronization validation; messages go to `onMessage`
+  std::string pipelineCacheFile;                      ///< empty: none. Written to a temporary name and renamed when the device closes
+  bool pushDescriptors = true;                        ///< false forces the descriptor-pool fallback (tests)
+  bool conservativeRasterization = true;              ///< false hides the hardware extension (tests)
   std::function<void(const std::string&)> onMessage;  ///< validation messages; default: stderr and count
 };
 
-/// Handles of a host's device. The host keeps ownership and must have enabled requiredFeatures() (see device.cpp).
+/// Handles of a host's device. The host keeps ownership and must have enabled what DeviceRequirements (requirements.h) asks for.
+/// While Radivox uploads, downloads, or runs its own command buffers, the host leaves the queue alone.
 struct AdoptInfo {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -57,6 +65,9 @@ struct AdoptInfo {
   VkQueue queue = VK_NULL_HANDLE;  ///< graphics + compute
   uint32_t queueFamily = 0;
   std::vector<std::string> deviceExtensions;  ///< those the host enabled
+  /// The feature chain the host gave to vkCreateDevice. Null: the chain of DeviceRequirements as it stands.
+  const VkPhysicalDeviceFeatures2* enabledFeatures = nullptr;
+  bool debugUtils = false;  ///< the host enabled VK_EXT_debug_utils, so that objects may be named
   std::string pipelineCacheFile;
 };
 
@@ -84,7 +95,8 @@ class Device {
   const Capabilities& capabilities() const { return capabilities_; }
   uint32_t validationMessageCount() const { return validationMessageCount_; }
 
-  /// One allocation per call (Radivox has tens of resources, not thousands). Throws OutOfMemory with the size.
+  /// One allocation per call (Radivox has tens of resources, not thousands). Throws OutOfMemory with the size. HOST_VISIBLE and
+  /// HOST_COHERENT are demands; DEVICE_LOCAL and HOST_CACHED are wishes, dropped where no memory type grants them.
   VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags flags, bool deviceAddress);
   void free(VkDeviceMemory memory);
   MemoryUse memoryUse() const;
@@ -95,6 +107,7 @@ class Device {
   void failAfter(uint32_t n) { failCountdown_ = n; }
   bool takeInjectedFailure();
 
+  /// Not thread-safe: one thread at a time records and submits on a Device.
   /// Records `record` into a fresh command buffer, submits, waits. For uploads, read-back and tests.
   void submitAndWait(const std::function<void(VkCommandBuffer)>& record);
   /// Submits an already recorded command buffer and waits for it.
@@ -121,13 +134,14 @@ class Device {
   PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;
   bool ownsDevice_ = false;
   std::string pipelineCacheFile_;
+  size_t pipelineCacheBytes_ = 0;  ///< as loaded; written again only when it has grown or shrunk
   Capabilities capabilities_;
   VkPhysicalDeviceMemoryProperties memoryProperties_{};
   mutable std::mutex memoryMutex_;
   MemoryUse memoryUse_;
   std::vector<std::pair<VkDeviceMemory, VkDeviceSize>> allocations_;
   uint32_t failCountdown_ = 0;
-  uint32_t validationMessageCount_ = 0;
+  std::atomic<uint32_t> validationMessageCount_{0};  ///< the layer calls from any thread
   std::function<void(const std::string&)> onMessage_;
 };
 

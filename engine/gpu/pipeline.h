@@ -18,6 +18,15 @@ enum class BindingType : uint8_t {
   SampledImage,  ///< combined image sampler, nearest, clamp to edge; layout GENERAL (colour) or DEPTH_READ_ONLY_OPTIMAL
 };
 
+constexpr uint32_t kMaxBindings = 32;  ///< what every device with push descriptors allows
+
+/// What a shader takes an image for, read from its SPIR-V: bind() finds the placeholder of a null image by it.
+enum class TexelType : uint8_t { Float, Uint, Int };
+struct ImageKind {
+  TexelType texel = TexelType::Float;
+  bool array = false;
+};
+
 /// SPIR-V of "clustered_voxel/visibility/trace.comp" (path under shaders/). Throws BadInput for an unknown name.
 /// RADIVOX_SHADER_DIR in the environment, if set, is searched for NAME.spv first (development).
 std::span<const uint32_t> findShader(std::string_view name);
@@ -38,12 +47,12 @@ struct ComputePipelineInfo {
 
 struct RasterPipelineInfo {
   std::string_view vertexShader;
-  std::string_view geometryShader;  ///< empty: none
-  std::string_view fragmentShader;  ///< empty: none (depth only)
+  std::string_view geometryShader;    ///< empty: none
+  std::string_view fragmentShader;    ///< empty: none (depth only)
   std::vector<BindingType> bindings;  ///< visible to all stages
   uint32_t pushConstantBytes = 0;
   std::vector<SpecializationConstant> constants;  ///< the same for all stages
-  std::vector<VkFormat> colorFormats;  ///< may be empty (voxelization renders to nothing)
+  std::vector<VkFormat> colorFormats;             ///< may be empty (voxelization renders to nothing)
   VkFormat depthFormat = VK_FORMAT_UNDEFINED;
   VkCompareOp depthCompare = VK_COMPARE_OP_GREATER_OR_EQUAL;  ///< reversed z: 1 near, 0 far
   VkCullModeFlags cullMode = VK_CULL_MODE_NONE;
@@ -67,11 +76,14 @@ class Pipeline {
   VkDescriptorSetLayout setLayout() const { return setLayout_; }
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
   const std::vector<BindingType>& bindings() const { return bindings_; }
+  const std::vector<ImageKind>& imageKinds() const { return imageKinds_; }  ///< one per binding; buffers have the default
   uint32_t pushConstantBytes() const { return pushConstantBytes_; }
   VkShaderStageFlags stages() const { return stages_; }
   explicit operator bool() const { return pipeline_ != VK_NULL_HANDLE; }
 
  private:
+  void makeCompute(Device& device, const ComputePipelineInfo& info);
+  void makeRaster(Device& device, const RasterPipelineInfo& info);
   void makeLayout(Device& device, uint32_t pushBytes, VkShaderStageFlags stages);
   void release() noexcept;
   Device* device_ = nullptr;
@@ -81,6 +93,7 @@ class Pipeline {
   VkPipelineBindPoint bindPoint_ = VK_PIPELINE_BIND_POINT_COMPUTE;
   VkShaderStageFlags stages_ = 0;
   std::vector<BindingType> bindings_;
+  std::vector<ImageKind> imageKinds_;
   uint32_t pushConstantBytes_ = 0;
 };
 

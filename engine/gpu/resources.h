@@ -16,13 +16,19 @@ enum class MemoryKind {
   ReadBack,  ///< host visible and coherent, mapped (cached where there is such a type); device writes
 };
 
+/// Bytes of a texel as download() lays it out (depth formats: the depth aspect). Throws BadInput for formats Radivox does not use.
+uint32_t texelBytes(VkFormat format);
+bool isDepthFormat(VkFormat format);
+
+/// Bindings show at most Capabilities::maxStorageBufferRange bytes (128 MiB on lavapipe): what lies beyond in a larger buffer is
+/// reached by device address, or by binding pieces of it (BoundResource's offset and range). bytes() is always the whole.
 /// Usage of every buffer: storage | transfer src/dst | indirect | uniform | shader device address (+ vertex/index).
 class Buffer {
  public:
   Buffer() = default;
   /// Throws OutOfMemory past maxBufferSize. `bytes` 0 becomes 16, so that a binding is always valid.
   Buffer(Device& device, const std::string& name, VkDeviceSize bytes, MemoryKind kind = MemoryKind::Device);
-  /// A buffer bound into memory that the caller owns (transient aliasing).
+  /// A buffer bound into memory that the caller owns (transient aliasing) and allocated with a device address.
   Buffer(Device& device, const std::string& name, VkDeviceSize bytes, VkDeviceMemory memory, VkDeviceSize offset);
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
@@ -54,7 +60,8 @@ struct ImageInfo {
   uint32_t layers = 1;  ///< views are 2D for 1 layer unless `arrayView`
   VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
   bool arrayView = false;
-  /// Colour formats: storage | sampled | colour attachment | transfer. Depth formats: sampled | depth attachment | transfer.
+  /// Usage, as far as the device allows it for the format. Colour formats: storage | sampled | colour attachment | transfer.
+  /// Depth formats: sampled | depth attachment | transfer.
 };
 
 class Image {
@@ -69,7 +76,7 @@ class Image {
   ~Image();
 
   VkImage handle() const { return image_; }
-  VkImageView view() const { return view_; }                         ///< all layers
+  VkImageView view() const { return view_; }                                     ///< all layers
   VkImageView layerView(uint32_t layer) const { return layerViews_.at(layer); }  ///< one layer, 2D, for rendering
   const ImageInfo& info() const { return info_; }
   VkImageAspectFlags aspect() const;
@@ -97,7 +104,8 @@ class Image {
 /// Copies through a staging buffer and waits. For scene upload and tests; never per frame.
 void upload(Device& device, Buffer& to, std::span<const std::byte> data, VkDeviceSize offset = 0);
 std::vector<std::byte> download(Device& device, const Buffer& from, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
-/// Tightly packed rows of one layer, top row first.
+/// Tightly packed rows of one layer, top row first. The image's layout is left as found (UNDEFINED becomes GENERAL: there is no way
+/// back to it).
 std::vector<std::byte> download(Device& device, Image& from, uint32_t layer = 0);
 
 template <class T>
