@@ -102,9 +102,10 @@ TEST(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
 TEST(Render, SameBitsTwice) {
   for (const char* name : {"cornell", "two_rooms"}) {
     PipelineOptions options = small(20);
-    options.outputs = {"composite.color",  "surface.faces",     "cluster.labels",         "visibility.row_start", "transfer.row_start",
-                       "transfer.sky",     "inject.face_irradiance", "bounce.face_radiosity", "gather.irradiance", "filter.irradiance",
-                       "voxelize.occupancy", "index.voxels",    "members.members"};
+    options.outputs = {"composite.color",    "surface.faces",     "cluster.labels",         "visibility.row_start",
+                       "transfer.row_start", "transfer.sky",      "inject.face_irradiance", "bounce.face_radiosity",
+                       "gather.irradiance",  "filter.irradiance", "voxelize.occupancy",     "index.voxels",
+                       "members.members"};
     Pipeline a(oracle::testDevice(), scene::makeBuiltin(name), options);
     Pipeline b(oracle::testDevice(), scene::makeBuiltin(name), options);
     a.run();

@@ -1,0 +1,75 @@
+// Whole pictures against independent path-traced renders. The figures are printed, so that a run tells how good it was, and bounded below
+// by what the method reached when they were last looked at.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/oracles/gpu_fixture.h"
+#include "tests/oracles/pipeline.h"
+#include "tests/oracles/truth.h"
+
+namespace radivox {
+namespace {
+
+using oracle::Pipeline;
+using oracle::PipelineOptions;
+
+struct Quality {
+  oracle::Difference full, direct, indirect;
+};
+
+Quality measure(const std::string& sceneName, const oracle::Truth& truth, PipelineOptions options) {
+  options.width = truth.color.width;
+  options.height = truth.color.height;
+  options.outputs = {"composite.color", "direct.irradiance", "shade.irradiance"};
+  Pipeline p(oracle::testDevice(), scene::loadScene(oracle::sharedFolder() + "/scenes/" + sceneName), options);
+  p.run();
+  Quality q;
+  q.full = compareToTruth(truth.color, p.picture("composite.color"), truth.albedo);
+  q.direct = compareToTruth(truth.direct, p.picture("direct.irradiance"), truth.albedo);
+  q.indirect = compareToTruth(truth.indirect, p.picture("shade.irradiance"), truth.albedo);
+  std::printf("%-18s N=%-4s full %.2f dB (bias %.3f)  direct %.2f dB (%.3f)  indirect %.2f dB (%.3f), floor %.2f dB\n", sceneName.c_str(),
+              options.settings.front().second.c_str(), q.full.psnr, q.full.bias, q.direct.psnr, q.direct.bias, q.indirect.psnr,
+              q.indirect.bias, truth.noiseFloorIndirect);
+  return q;
+}
+
+PipelineOptions at(uint32_t resolution, uint32_t bounces) {
+  PipelineOptions options;
+  options.settings = {{"voxelize.resolution", std::to_string(resolution)}};
+  options.bounces = bounces;
+  return options;
+}
+
+TEST(Truth, SlowCornellBoxes) {
+  if (oracle::sharedFolder().empty()) GTEST_SKIP() << "no ../shared";
+  for (const char* name : {"cornell", "cornell_point"}) {
+    const oracle::Truth eight = oracle::loadTruth(std::string(name) + "_b8", 0.5);
+    const oracle::Truth one = oracle::loadTruth(std::string(name) + "_b1", 0.5);
+    double previous = 0;
+    for (const uint32_t n : {32u, 64u, 128u}) {
+      const Quality q = measure(std::string(name) + ".glb", eight, at(n, scene::kAllBounces));
+      if (previous > 0) {
+        EXPECT_NEAR(q.indirect.bias, previous, 0.03) << n;
+      }
+      previous = q.indirect.bias;
+      EXPECT_GT(q.full.psnr, 28.0);
+    }
+    const Quality first = measure(std::string(name) + ".glb", one, at(64, 1));
+    EXPECT_NEAR(first.indirect.bias, 1.0, 0.06);
+  }
+  EXPECT_EQ(oracle::testDevice().validationMessageCount(), 0u);
+}
+
+TEST(Truth, SlowSponza) {
+  if (oracle::sharedFolder().empty()) GTEST_SKIP() << "no ../shared";
+  const oracle::Truth eight = oracle::loadTruth("sponza_b8", 256.0 / 768.0);
+  const Quality q = measure("sponza.glb", eight, at(128, scene::kAllBounces));
+  EXPECT_GT(q.full.psnr, 27.0);
+  EXPECT_GT(q.indirect.psnr, 20.0);
+  EXPECT_NEAR(q.indirect.bias, 1.0, 0.15);
+  EXPECT_EQ(oracle::testDevice().validationMessageCount(), 0u);
+}
+
+}  // namespace
+}  // namespace radivox
