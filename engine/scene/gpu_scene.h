@@ -24,6 +24,7 @@ struct LightOptions {
 ///   scene.materials shared::Material    scene.textures shared::Texture (texels by device address)
 ///   scene.info      shared::SceneInfo   scene.lights shared::Light  scene.shadow_views shared::ShadowView
 ///   scene.emissive_triangles shared::EmissiveTriangle               view.camera shared::Camera
+/// scene.shadow_views is host visible (MemoryKind::Upload): frame.shadow_map reads the tiles from it while it records.
 class GpuScene {
  public:
   GpuScene(gpu::Device& device, const Scene& scene, const LightOptions& options = {});
