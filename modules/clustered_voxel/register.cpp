@@ -3,6 +3,7 @@
 #include "modules/clustered_voxel/filter/filter.h"
 #include "modules/clustered_voxel/gather/gather.h"
 #include "modules/clustered_voxel/inject/inject.h"
+#include "modules/clustered_voxel/inspect/inspect.h"
 #include "modules/clustered_voxel/mark/mark.h"
 #include "modules/clustered_voxel/shade/shade.h"
 
@@ -14,6 +15,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Mark>("voxel faces that this view needs");
   registry.add<Gather>("irradiance of the needed faces from their visible clusters, lazily");
   registry.add<Filter>("smooths gathered irradiance over surfaces, not across walls");
+  registry.add<Inspect>("voxel face and cluster of each pixel, for pictures");
   registry.add<Shade>("indirect irradiance on screen from voxel faces");
 }
 
