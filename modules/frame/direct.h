@@ -1,0 +1,46 @@
+// frame.direct — direct irradiance on screen from punctual lights and emissive triangles.
+//
+// reads   gbuffer position, normal, triangle; scene.vertices, .indices, .info, .lights, .shadow_views, .emissive_triangles;
+//         shadow_depth?, shadow_triangle? = shadow_map.depth, .triangle (without them nothing is shadowed);
+//         emitted? = irradiance that emitters bring, found by rays (only where traits say emittersByRays)
+// writes  irradiance  image RGBA32F  E_direct at the pixel's surface, W/m²; a: 1 surface, 0 sky. Not the sky's light: composite adds that
+// runs    when the view, the lights or the shadow maps change
+// cost    pixels × (lights × (2·filter)² texels + emissive triangles up to `closed_form`). Left out without lights and emitters.
+// source  KHR_lights_punctual; Lambert's boundary formula (shaders/frame/polygon.glsl); shadow.glsl for visibility
+//
+// Light counts only where it meets the viewer's side, by shading and by geometric normal.
+// Emitters: at most `closed_form` emissive triangles are summed in closed form, times the visible share Σ w V / Σ w over the emitter
+// samples, w = a sample's unshadowed irradiance: exact without occluders, and not singular near an emitter. Above that, the samples alone.
+// Where emitters have no samples (emittersByRays) `emitted` is added if connected. Else the closed form is used unshadowed, its form
+// factors normalised to at most 1: exact inside convex emitters (a furnace), too bright behind occluders; the plan and the figure
+// `emitters_unshadowed` say so.
+#pragma once
+
+#include "engine/graph/node.h"
+
+namespace radivox::frame {
+
+class Direct : public graph::Node {
+ public:
+  static constexpr std::string_view kType = "frame.direct";
+  Direct();
+  std::string_view type() const override { return kType; }
+  params::Table& params() override { return table_; }
+  void declare(graph::Declaration& d) override;
+  void prepare(graph::PrepareContext& context) override;
+  void record(graph::RecordContext& context) override;
+
+ private:
+  /// As kEmitters of direct.comp.
+  enum class Emitters : uint32_t { None, Shadowed, Samples, Unshadowed, Image };
+  Emitters chooseEmitters(const scene::Traits& traits, bool hasImage) const;
+
+  uint32_t filter_ = 1;
+  uint32_t closedForm_ = 256;
+  params::Table table_;
+  Emitters emitters_ = Emitters::None;
+  gpu::Pipeline pipeline_;
+  const gpu::Image absent_;  ///< bound where the specialized shader reads nothing
+};
+
+}  // namespace radivox::frame
