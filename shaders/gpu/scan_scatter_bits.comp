@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference : require
-#extension GL_EXT_buffer_reference_uvec2 : require
 // Writes the indices of the set bits in order. By address, since where a block's indices go depends on the data: a list longer than a
 // binding can show cannot be split into bindings beforehand.
 #include "gpu/scan.glsl"
