@@ -86,7 +86,8 @@ class Commands {
   void endRendering();
   /// Inside rendering: viewport and scissor of a tile, in texels.
   void setViewport(int32_t x, int32_t y, uint32_t width, uint32_t height) {
-    const VkViewport viewport{static_cast<float>(x), static_cast<float>(y), static_cast<float>(width), static_cast<float>(height), 0.f, 1.f};
+    const VkViewport viewport{
+        static_cast<float>(x), static_cast<float>(y), static_cast<float>(width), static_cast<float>(height), 0.f, 1.f};
     const VkRect2D scissor{{x, y}, {width, height}};
     vkCmdSetViewport(commands_, 0, 1, &viewport);
     vkCmdSetScissor(commands_, 0, 1, &scissor);

@@ -47,7 +47,7 @@ Pipeline makePipeline(Device& device, std::string_view shader, size_t bufferCoun
 
 }  // namespace
 
-Scan::Scan(Device& device)
+Scan::Scan(Device& device, uint64_t mostPieceItems)
     : reduceWords_(makePipeline(device, "gpu/scan_reduce.comp", 2, sizeof(ReducePush), 0)),
       reducePairs_(makePipeline(device, "gpu/scan_reduce.comp", 2, sizeof(ReducePush), 1)),
       reduceBits_(makePipeline(device, "gpu/scan_reduce.comp", 2, sizeof(ReducePush), 2)),
@@ -58,7 +58,8 @@ Scan::Scan(Device& device)
   // A piece's sums must start at an aligned offset too: 32 blocks' sums are 256 bytes.
   constexpr uint64_t kStep = kBlock * kOffsetAlignment / 8;
   constexpr uint64_t kMostItems = uint64_t{1} << 27;  // keeps every index of a piece within 32 bits
-  pieceItems_ = std::min<uint64_t>(device.capabilities().maxStorageBufferRange / 8 / kStep * kStep, kMostItems);
+  const uint64_t most = std::min<uint64_t>({device.capabilities().maxStorageBufferRange / 8, mostPieceItems, kMostItems});
+  pieceItems_ = std::max(most / kStep * kStep, kStep);
 }
 
 Scan::Levels Scan::planLevels(uint64_t itemCount) {

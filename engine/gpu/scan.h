@@ -9,7 +9,8 @@ namespace radivox::gpu {
 class Scan {
  public:
   static constexpr uint32_t kBlock = 1024;  ///< items a workgroup sums (256 lanes × 4)
-  explicit Scan(Device& device);
+  /// `mostPieceItems` (tests) makes pieces smaller than the device's binding range asks for; it is rounded down to 32768 at least.
+  explicit Scan(Device& device, uint64_t mostPieceItems = uint64_t{1} << 27);
 
   /// Bytes of scratch that scan() needs for `itemCount` items.
   static VkDeviceSize scratchBytes(uint64_t itemCount);
