@@ -1,0 +1,67 @@
+// radivox graph and radivox scene: the plan without running it; a built-in scene as a file.
+#include <filesystem>
+#include <iostream>
+
+#include "engine/error.h"
+#include "engine/graph/plan.h"
+#include "engine/image/image.h"
+#include "engine/scene/builtin.h"
+#include "engine/scene/gltf.h"
+#include "engine/scene/scene.h"
+#include "samples/cli/assets.h"
+#include "samples/cli/job.h"
+
+namespace radivox::cli {
+
+namespace {
+
+/// Those of the device that would run it, or none at all: a plan can be read on any machine.
+gpu::Capabilities findCapabilities(int index) {
+  gpu::DeviceOptions options;
+  options.index = index;
+  try {
+    return gpu::Device::create(options)->capabilities();
+  } catch (const Error& e) {
+    if (index >= 0 || (e.code() != ErrorCode::Unsupported && e.code() != ErrorCode::DeviceFailed)) throw;
+    return {};
+  }
+}
+
+}  // namespace
+
+int runGraph(const Options& options) {
+  const std::vector<std::string> formats = {"text", "dot", "json"};
+  if (options.format != "text" && options.format != "dot" && options.format != "json") failUnknown("format", options.format, formats);
+  Job job;
+  prepareJob(options, true, job);
+  const int deviceIndex = parseDevice(options.device);
+  const scene::Scene scene = scene::loadScene(options.scene);
+  scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
+  const gpu::Capabilities capabilities = findCapabilities(deviceIndex);
+  const scene::SceneShapes shapes = scene::describeShapes(scene, job.lights, job.request.width, job.request.height);
+  const scene::Traits traits = scene::traitsFor(scene, job.lights);
+  const graph::Plan plan = graph::compile(job.graph, {traits, job.request, capabilities, shapes.imports, shapes.counts});
+  if (options.format == "text") {
+    std::cout << plan.printText(shapes.counts);
+  } else if (options.format == "dot") {
+    std::cout << plan.printDot();
+  } else {
+    std::cout << plan.printJson(shapes.counts) << "\n";
+  }
+  return 0;
+}
+
+int runScene(const Options& options) {
+  if (options.outputs.size() != 1) throw Error(ErrorCode::BadInput, "--out is missing; give one .glb file to write");
+  const std::string& path = options.outputs[0];
+  if (std::filesystem::path(path).extension() != ".glb") {
+    throw Error(ErrorCode::BadInput, "--out '" + path + "': unknown kind of file; end the name in .glb");
+  }
+  image::checkWritable(path);
+  const std::string prefix = "builtin:";
+  const std::string name = options.scene.rfind(prefix, 0) == 0 ? options.scene.substr(prefix.size()) : options.scene;
+  scene::exportGlb(scene::loadScene(prefix + name), path);
+  return 0;
+}
+
+}  // namespace radivox::cli

@@ -1,0 +1,47 @@
+// What `render` and `graph` share: the graph with its presets and settings, the request, and the AOVs as endpoints of that graph.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/graph/graph.h"
+#include "engine/scene/gpu_scene.h"
+#include "samples/cli/options.h"
+
+namespace radivox::cli {
+
+/// One layer of the picture.
+struct Aov {
+  std::string name;      ///< "depth"
+  std::string endpoint;  ///< "gbuffer.position"; empty: black by definition (indirect light of 0 bounces)
+  int channel = -1;      ///< one channel of the image; −1: its colour channels
+};
+
+struct Job {
+  plugin::Registry registry;
+  graph::Graph graph;
+  std::string graphName;
+  std::vector<std::string> presetNames;
+  scene::Request request;
+  Size size;  ///< of the picture; request.width and .height are `supersample` times as large
+  uint32_t supersample = 1;
+  scene::LightOptions lights;
+  std::vector<Aov> aovs;               ///< as asked for
+  std::optional<Aov> displayEndpoint;  ///< tone-mapped picture of `color`, where it is wanted and the graph has it
+  params::Table lightParams;           ///< of `lights`; `--set lights.param=value`
+
+  Job() = default;
+  Job(const Job&) = delete;  // lightParams points into it
+  Job& operator=(const Job&) = delete;
+};
+
+/// Fills `job`; the graph's outputs are those that the AOVs need, and with `wantsDisplay` the tone-mapped picture. Throws BadInput.
+void prepareJob(const Options& options, bool wantsDisplay, Job& job);
+
+params::Table lightTable(scene::LightOptions& lights);
+
+/// Linked-in modules and those of --module.
+void fillRegistry(const Options& options, plugin::Registry& registry);
+
+}  // namespace radivox::cli

@@ -1,0 +1,169 @@
+// The radivox command. Exit codes: 0 done, 2 bad usage or input, 3 the device cannot, 4 out of memory, 130 interrupted.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "engine/error.h"
+#include "engine/params/params.h"
+#include "samples/cli/assets.h"
+#include "samples/cli/interrupt.h"
+#include "samples/cli/options.h"
+
+namespace radivox::cli {
+
+namespace {
+
+constexpr int kInternalErrorExitCode = 1;
+
+int exitCodeOf(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::BadInput:
+      return 2;
+    case ErrorCode::Unsupported:
+    case ErrorCode::DeviceFailed:
+      return 3;
+    case ErrorCode::OutOfMemory:
+      return 4;
+  }
+  return kInternalErrorExitCode;
+}
+
+/// Always one line.
+void printError(std::string message) {
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fprintf(stderr, "radivox: %s\n", message.c_str());
+}
+
+void addRepeated(CLI::App* command, const std::string& name, std::vector<std::string>& to, const std::string& help,
+                 const std::string& value) {
+  // One value each time, so that a SCENE that follows is not swallowed.
+  command->add_option(name, to, help)->type_name(value)->allow_extra_args(false)->take_all();
+}
+
+void addPlanOptions(CLI::App* command, Options& options) {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
+  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
+      ->type_name("NAME|FILE.json");
+  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
+  addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
+  command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) the converged solution")
+      ->type_name("N|all");
+  command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
+  command->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
+  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: 1)")->type_name("K");
+  command->add_option("--aov", options.aovs, "what to write, linear (default: color)")->type_name("NAME[,NAME...]");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+}
+
+/// Words that no option of the command took. CLI11's own report knows no nearest name.
+void refuseExtras(const CLI::App& command, const std::string& what) {
+  const std::vector<std::string> extras = command.remaining();
+  if (extras.empty()) return;
+  std::string extra = extras.front();
+  if (extra.rfind("-", 0) != 0) {
+    throw Error(ErrorCode::BadInput, "unexpected argument '" + extra + "'; see `radivox " + what + "--help`");
+  }
+  extra = extra.substr(0, extra.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::string near = params::nearestName(extra, names);
+  throw Error(ErrorCode::BadInput,
+              "unknown option '" + extra + "'; " + (near.empty() ? "see `radivox " + what + "--help`" : "did you mean '" + near + "'?"));
+}
+
+void requireScene(const Options& options, const std::string& name) {
+  if (!options.scene.empty()) return;
+  throw Error(ErrorCode::BadInput,
+              "SCENE is missing; give a .gltf or .glb file or builtin:NAME, as in `radivox " + name + " builtin:atrium`");
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("Voxel global illumination for Vulkan.", "radivox");
+  app.set_version_flag("--version", std::string("radivox ") + RADIVOX_VERSION);
+  app.require_subcommand(0, 1);
+  app.allow_extras();
+  app.footer("Exit codes: 0 done, 2 bad usage or input, 3 the device cannot, 4 out of memory, 130 interrupted.");
+
+  CLI::App* render = app.add_subcommand("render", "render a scene to .exr or .png");
+  addPlanOptions(render, options);
+  addRepeated(render, "--out", options.outputs, "picture to write; may be repeated", "FILE.exr|.png");
+  render->add_option("--stats", options.stats, "times, memory and counts to write")->type_name("FILE.json");
+  render->add_option("--frames", options.frames, "run the graph N times, nothing changed in between (default: 1)")->type_name("N");
+  render->add_flag("--validate", options.validate, "with Vulkan's validation layer; its messages are errors");
+  CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
+  addPlanOptions(graph, options);
+  graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
+  CLI::App* scene = app.add_subcommand("scene", "write a built-in scene as .glb");
+  scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...]")->type_name("");
+  addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
+  CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
+  addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+  const std::vector<std::string> commandNames = {"render", "graph", "scene", "info"};
+  for (CLI::App* command : {render, graph, scene, info}) command->allow_extras();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);  // --help, --version
+  } catch (const CLI::ParseError& e) {
+    throw Error(ErrorCode::BadInput, std::string(e.what()) + "; see `radivox --help`");
+  }
+  if (app.get_subcommands().empty()) {
+    const std::vector<std::string> extras = app.remaining();
+    if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
+    refuseExtras(app, "");
+    throw Error(ErrorCode::BadInput, "a command is missing; give render, graph, scene or info, or see `radivox --help`");
+  }
+  const CLI::App* command = app.get_subcommands().front();
+  refuseExtras(app, "");
+  refuseExtras(*command, command->get_name() + " ");
+
+  catchInterrupts();
+  if (command == info) return runInfo(options);
+  if (command == scene && options.scene.empty()) {
+    throw Error(ErrorCode::BadInput,
+                "NAME is missing; give a built-in scene of `radivox info`, as in `radivox scene cornell --out cornell.glb`");
+  }
+  requireScene(options, command->get_name());
+  if (command == scene) return runScene(options);
+  return command == graph ? runGraph(options) : runRender(options);
+}
+
+int runGuarded(int argc, char** argv) {
+  try {
+    const int code = run(argc, argv);
+    // A full disk behind `>` shows only here.
+    if (!std::cout.flush()) throw Error(ErrorCode::BadInput, "cannot write to standard output; redirect it to a file with room");
+    return code;
+  } catch (const Interrupted&) {
+    printError("interrupted");
+    return kInterruptedExitCode;
+  } catch (const Error& e) {
+    if (isInterrupted()) {
+      printError("interrupted");
+      return kInterruptedExitCode;
+    }
+    printError(e.what());
+    return exitCodeOf(e.code());
+  } catch (const std::bad_alloc&) {
+    printError("out of memory on the host; choose a smaller scene, --size or voxelize.resolution");
+    return exitCodeOf(ErrorCode::OutOfMemory);
+  } catch (const std::exception& e) {
+    printError(std::string("internal error: ") + e.what() + "; please report it with the command line");
+    return kInternalErrorExitCode;
+  }
+}
+
+}  // namespace
+
+}  // namespace radivox::cli
+
+int main(int argc, char** argv) { return radivox::cli::runGuarded(argc, argv); }

@@ -1,0 +1,47 @@
+// What the command line says, as text and checked values; one struct for all subcommands.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace radivox::cli {
+
+struct Options {
+  std::string scene;
+  std::optional<std::string> graph;
+  std::vector<std::string> presets;
+  std::vector<std::string> sets;  ///< "node.param=value"
+  std::vector<std::string> modules;
+  std::string camera;
+  std::string size = "960x540";
+  std::optional<std::string> bounces;
+  std::string aovs = "color";  ///< comma-separated
+  std::vector<std::string> outputs;
+  std::string stats;
+  std::string format = "text";
+  std::string device = "-1";
+  std::string frames = "1";
+  std::string supersample = "1";
+  bool validate = false;
+};
+
+struct Size {
+  uint32_t width = 0, height = 0;
+};
+constexpr uint32_t kMaxSide = 16384;
+
+/// All throw BadInput naming the option, what was given and what is allowed.
+Size parseSize(const std::string& text);
+uint32_t parseWhole(const std::string& option, const std::string& text, uint32_t min, uint32_t max);
+uint32_t parseBounces(const std::string& text);  ///< a number or "all"
+int parseDevice(const std::string& text);
+std::vector<std::string> parseList(const std::string& option, const std::string& text);  ///< "a,b,c": no empty or repeated names
+
+int runRender(const Options& options);
+int runGraph(const Options& options);
+int runScene(const Options& options);
+int runInfo(const Options& options);
+
+}  // namespace radivox::cli
