@@ -64,8 +64,9 @@ class Executor {
   const Plan& plan() const;
   FrameStats stats() const;
 
+  struct Impl;  ///< private to engine/graph
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
