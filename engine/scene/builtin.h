@@ -14,9 +14,9 @@ struct BuiltinInfo {
 };
 std::vector<BuiltinInfo> builtinScenes();
 
-/// atrium (a two-storey arcaded court of our own, with curtains; triangles=N), cornell, cornell_point, furnace (albedo=, closed box, every wall
-/// emits so that B = 1 without reflection), two_rooms (one lit, a door between), thin_wall (one two-triangle sheet; one side lit by the sun),
-/// box (unit cube inward), plane, sphere, ramp, staircase, empty. Throws BadInput with the nearest name.
+/// atrium (a two-storey arcaded court of our own, with curtains; triangles=N), cornell, cornell_point, furnace (albedo=, closed box, every
+/// wall emits L_e = (1 - albedo)/pi, so that B = 1 everywhere), two_rooms (one lit, a door between), thin_wall (one two-triangle sheet; one
+/// side lit by the sun), box (unit cube inward), plane, sphere, ramp, staircase, empty. Throws BadInput with the nearest name.
 Scene makeBuiltin(const std::string& name, const std::map<std::string, std::string>& parameters = {});
 
 }  // namespace radivox::scene

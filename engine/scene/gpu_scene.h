@@ -8,14 +8,14 @@
 namespace radivox::scene {
 
 struct LightOptions {
-  uint32_t shadowResolution = 2048;        ///< texels a side of a directional or spot map
-  uint32_t pointShadowResolution = 1024;   ///< a side of a cube face
-  uint32_t emitterSamples = 32;            ///< points on emissive triangles, by power; 0: emitters light through voxel rays only
+  uint32_t shadowResolution = 2048;       ///< texels a side of a directional or spot map
+  uint32_t pointShadowResolution = 1024;  ///< a side of a cube face
+  uint32_t emitterSamples = 32;           ///< points on emissive triangles, by power; 0: emitters light through voxel rays only
   uint32_t emitterShadowResolution = 256;
-  /// What all shadow maps may take together (8 bytes a texel: depth and triangle). Past it resolutions are halved, largest class first, then
-  /// emitter samples; if that is not enough, setUpLights throws OutOfMemory saying how many lights fit.
+  /// What all shadow maps may take together (8 bytes a texel: depth and triangle). Past it resolutions are halved, largest class first,
+  /// then emitter samples; if that is not enough, setUpLights throws OutOfMemory saying how many lights fit.
   uint64_t maxShadowBytes = 512ull << 20;
-  uint32_t maxShadowSide = 4096;           ///< GpuScene lowers these two to the device's limits
+  uint32_t maxShadowSide = 4096;  ///< GpuScene lowers these two to the device's limits
   uint32_t maxShadowLayers = 256;
 };
 
@@ -56,10 +56,10 @@ struct LightSetup {
   std::vector<shared::Light> lights;
   std::vector<shared::ShadowView> views;
   std::vector<shared::EmissiveTriangle> emissive;
-  uint32_t shadowResolution = 1;   ///< texels a side of every layer; views are tiles of layers
-  uint32_t shadowLayers = 1;       ///< at least 1, so that an image can always be made
-  uint32_t emitterSampleCount = 0; ///< 0 with emissive triangles: emitters light through rays
-  std::vector<std::string> notes;  ///< what had to be lowered to fit, one line each
+  uint32_t shadowResolution = 1;    ///< texels a side of every layer; views are tiles of layers
+  uint32_t shadowLayers = 1;        ///< at least 1, so that an image can always be made
+  uint32_t emitterSampleCount = 0;  ///< 0 with emissive triangles: emitters light through rays
+  std::vector<std::string> notes;   ///< what had to be lowered to fit, one line each
 };
 /// imports() and counts() of a GpuScene with a camera of this size, without a device: for printing plans.
 struct SceneShapes {

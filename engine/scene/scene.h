@@ -34,13 +34,13 @@ struct PunctualLight {
 
 struct CameraDescription {
   std::string name;
-  glm::vec3 position{0.f};  ///< relative to origin
+  glm::vec3 position{0.f};                    ///< relative to origin
   glm::quat orientation{1.f, 0.f, 0.f, 0.f};  ///< looks along −z, y up
   bool orthographic = false;
-  float yfov = 0.8f;        ///< radians
-  float ymag = 1.f;         ///< orthographic half height, m
-  float znear = 1e-3f;      ///< m, along the view axis
-  float zfar = 1e3f;        ///< m; orthographic only (perspective ends nowhere)
+  float yfov = 0.8f;    ///< radians
+  float ymag = 1.f;     ///< orthographic half height, m
+  float znear = 1e-3f;  ///< m, along the view axis
+  float zfar = 1e3f;    ///< m; orthographic only (perspective ends nowhere)
 };
 
 struct Scene {
@@ -53,9 +53,9 @@ struct Scene {
   std::vector<std::string> materialNames;
   std::vector<TextureImage> textures;
   std::vector<PunctualLight> lights;
-  std::vector<CameraDescription> cameras;   ///< at least one (a default view of the bounds is made when the file has none)
+  std::vector<CameraDescription> cameras;  ///< at least one (a default view of the bounds is made when the file has none)
   glm::vec3 skyRadiance{0.f};
-  std::vector<std::string> warnings;        ///< one line each; what was left out of the file and why
+  std::vector<std::string> warnings;  ///< one line each; what was left out of the file and why
 
   size_t triangleCount() const { return indices.size() / 3; }
   Traits traits() const;

@@ -20,10 +20,10 @@ struct Traits {
   uint32_t pointLightCount = 0;
   uint32_t spotLightCount = 0;
   uint32_t emissiveTriangleCount = 0;
-  bool alphaMasked = false;   ///< some material has alphaMode MASK
-  bool singleSided = false;   ///< some material is not double-sided
-  bool sky = false;           ///< constant sky radiance above 0
-  glm::vec3 boundsMin{0.f};   ///< metres, relative to the scene origin (Scene::origin)
+  bool alphaMasked = false;  ///< some material has alphaMode MASK
+  bool singleSided = false;  ///< some material is not double-sided
+  bool sky = false;          ///< constant sky radiance above 0
+  glm::vec3 boundsMin{0.f};  ///< metres, relative to the scene origin (Scene::origin)
   glm::vec3 boundsMax{0.f};
   double surfaceArea = 0.0;   ///< m², one side of each triangle
   double emissiveArea = 0.0;  ///< m², likewise of the emissive ones
