@@ -2,6 +2,7 @@
 #include "engine/plugin/registry.h"
 #include "modules/clustered_voxel/filter/filter.h"
 #include "modules/clustered_voxel/gather/gather.h"
+#include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
 #include "modules/clustered_voxel/inject/inject.h"
 #include "modules/clustered_voxel/inspect/inspect.h"
 #include "modules/clustered_voxel/mark/mark.h"
@@ -15,6 +16,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Mark>("voxel faces that this view needs");
   registry.add<Gather>("irradiance of the needed faces from their visible clusters, lazily");
   registry.add<Filter>("smooths gathered irradiance over surfaces, not across walls");
+  registry.add<GatherPixels>("indirect irradiance on screen by voxel rays from the pixels");
   registry.add<Inspect>("voxel face and cluster of each pixel, for pictures");
   registry.add<Shade>("indirect irradiance on screen from voxel faces");
 }

@@ -1,0 +1,97 @@
+#include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
+
+#include <cmath>
+
+#include "modules/clustered_voxel/structure.h"
+
+namespace radivox::clustered_voxel {
+
+using gpu::BindingType;
+using graph::Extent;
+using graph::Shape;
+
+namespace {
+constexpr uint32_t kBlock = 4;  // pixels a side of an interleaving block; the shaders know it too
+}
+
+std::vector<glm::vec4> cosineDirections(uint32_t count) {
+  std::vector<glm::vec4> out;
+  out.reserve(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    uint32_t a = 0, b = 0;
+    for (uint32_t bits = i, v = 1u << 31, w = 1u << 31; bits != 0; bits >>= 1, v >>= 1, w ^= w >> 1)
+      if ((bits & 1u) != 0) {
+        a ^= v;
+        b ^= w;
+      }
+    const double u = (a + 0.5) / 4294967296.0, phi = 6.283185307179586 * ((b + 0.5) / 4294967296.0);
+    const double r = std::sqrt(u);
+    out.emplace_back(r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - u), 0.0);
+  }
+  return out;
+}
+
+GatherPixels::GatherPixels()
+    : table_({params::number("rays", &rays_, {1, 256}, "voxel rays a pixel; a 4×4 block of pixels shares 16 times as many directions",
+                             params::Invalidates::Plan),
+              params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
+                             params::Invalidates::Plan)}) {}
+
+void GatherPixels::declare(graph::Declaration& d) {
+  const Shape image = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
+  d.read("position", "relative world m, w: distance along the view axis, 0: sky");
+  d.read("normal", "unit shading normal");
+  declareStructure(d);
+  d.read("distance", "bricks to the nearest occupied brick, four bytes a word");
+  d.read("face_radiosity", "reflected radiosity, W/m²");
+  d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
+  d.scratch("raw", image, "E_indirect from each pixel's own rays");
+  if (smooth_ > 0) d.scratch("between", image, "E_indirect between filter passes");
+}
+
+void GatherPixels::prepare(graph::PrepareContext& context) {
+  constexpr auto kB = BindingType::StorageBuffer;
+  constexpr auto kI = BindingType::StorageImage;
+  gpu::Device& device = context.device();
+  const std::vector<glm::vec4> directions = cosineDirections(kBlock * kBlock * rays_);
+  directions_ = gpu::Buffer(device, "gather_pixels.directions", directions.size() * sizeof(glm::vec4));
+  gpu::upload(device, directions_, directions);
+  trace_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
+                                                          .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kB, kI},
+                                                          .pushConstantBytes = 12});
+  filter_ = gpu::Pipeline(
+      device, gpu::ComputePipelineInfo{
+                  .shader = "clustered_voxel/gather_pixels/filter.comp", .bindings = {kB, kI, kI, kI, kI}, .pushConstantBytes = 16});
+}
+
+void GatherPixels::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const gpu::Image& position = context.image("position");
+  const gpu::Image& normal = context.image("normal");
+  const gpu::Image& raw = context.image("raw");
+  struct {
+    uint32_t width, height, rays;
+  } push{raw.info().width, raw.info().height, rays_};
+  bindStructure(context, trace_, {position, normal, context.buffer("distance"), context.buffer("face_radiosity"), directions_, raw});
+  commands.push(push);
+  // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
+  const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);
+  commands.dispatchItems(blocks * kBlock * kBlock, 64);
+
+  const gpu::Image& out = context.image("irradiance");
+  const gpu::Image* from = &raw;
+  for (uint32_t pass = 0; pass <= smooth_; ++pass) {
+    commands.barrier();
+    // Ends in `irradiance` whatever the number of passes.
+    const gpu::Image& to = (smooth_ - pass) % 2 == 0 ? out : context.image("between");
+    commands.bind(filter_, {context.buffer("grid"), position, normal, *from, to});
+    struct {
+      uint32_t width, height, pass, step;
+    } filterPush{push.width, push.height, pass, pass == 0 ? 1u : kBlock << (pass - 1)};
+    commands.push(filterPush);
+    commands.dispatchItems(uint64_t{push.width} * push.height, 64);
+    from = &to;
+  }
+}
+
+}  // namespace radivox::clustered_voxel
