@@ -83,9 +83,11 @@ Draft declareAll(const Graph& graph, const CompileInput& input) {
       }
     }
     for (const auto& count : declaration.publishedCounts) {
-      const auto port = std::find_if(declaration.ports.begin(), declaration.ports.end(), [&](const Port& p) { return p.name == count.port; });
+      const auto port =
+          std::find_if(declaration.ports.begin(), declaration.ports.end(), [&](const Port& p) { return p.name == count.port; });
       if (count.port.empty() ? !declaration.isHostPaced() : (port == declaration.ports.end() || !isOutput(*port))) {
-        draft.errors.push_back(entry.name + " publishes the count " + count.name + " from \"" + count.port + "\", which is no output of it");
+        draft.errors.push_back(entry.name + " publishes the count " + count.name + " from \"" + count.port +
+                               "\", which is no output of it");
       } else if (!count.port.empty()) {
         // A published word must be there to be read.
         draft.wanted.back()[static_cast<size_t>(port - declaration.ports.begin())] = 1;
@@ -96,7 +98,8 @@ Draft declareAll(const Graph& graph, const CompileInput& input) {
   for (uint32_t n = 0; n < draft.declarations.size(); ++n) {
     for (const auto& count : draft.declarations[n].publishedCounts) {
       const uint32_t first = draft.publisher(count.name);
-      if (first != n) draft.errors.push_back("the count " + count.name + " is published by " + draft.nodeName(first) + " and " + draft.nodeName(n));
+      if (first != n)
+        draft.errors.push_back("the count " + count.name + " is published by " + draft.nodeName(first) + " and " + draft.nodeName(n));
     }
   }
   return draft;

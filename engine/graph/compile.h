@@ -29,10 +29,10 @@ struct Culled {
 struct Draft {
   const Graph& graph;
   const CompileInput& input;
-  std::vector<Declaration> declarations;            // per node
-  std::vector<std::vector<Source>> sources;         // per node and port
-  std::vector<std::vector<char>> wanted;            // per node and port: somebody live reads it or it is an output
-  std::vector<std::optional<Culled>> culled;        // per node
+  std::vector<Declaration> declarations;      // per node
+  std::vector<std::vector<Source>> sources;   // per node and port
+  std::vector<std::vector<char>> wanted;      // per node and port: somebody live reads it or it is an output
+  std::vector<std::optional<Culled>> culled;  // per node
   std::vector<std::string> errors;
 
   const std::string& nodeName(uint32_t node) const { return graph.nodes()[node].name; }

@@ -53,8 +53,8 @@ void checkKinds(Draft& draft, uint32_t node) {
     if (!expected && (ports[p].use & UseAttachment) != 0) expected = ResourceKind::Image;
     if (!expected && (ports[p].use & UseIndirect) != 0) expected = ResourceKind::Buffer;
     if (expected && *expected != origin.kind) {
-      draft.errors.push_back(draft.portName(node, p) + " takes " + kindName(*expected) + ", " +
-                             draft.sourceName(draft.sources[node][p]) + " is " + kindName(origin.kind));
+      draft.errors.push_back(draft.portName(node, p) + " takes " + kindName(*expected) + ", " + draft.sourceName(draft.sources[node][p]) +
+                             " is " + kindName(origin.kind));
     }
   }
 }
@@ -109,8 +109,8 @@ void checkDeadVersions(Draft& draft) {
       }
       for (const Endpoint& output : draft.graph.outputs()) {
         if (output.print() == name) {
-          draft.errors.push_back("output " + name + " is a version that " + draft.nodeName(n) + " modifies; output " + draft.portName(n, p) +
-                                 " instead");
+          draft.errors.push_back("output " + name + " is a version that " + draft.nodeName(n) + " modifies; output " +
+                                 draft.portName(n, p) + " instead");
         }
       }
     }

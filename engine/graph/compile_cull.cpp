@@ -56,7 +56,8 @@ class Liveness {
     const auto& ports = draft_.declarations[node].ports;
     for (uint32_t p = 0; p < ports.size(); ++p) {
       if (isInput(ports[p])) {
-        if (draft_.reads(node, p) && draft_.sources[node][p].node != kNone) wantPort(draft_.sources[node][p].node, draft_.sources[node][p].port);
+        if (draft_.reads(node, p) && draft_.sources[node][p].node != kNone)
+          wantPort(draft_.sources[node][p].node, draft_.sources[node][p].port);
       } else if (!ports[p].optional || draft_.wanted[node][p] != 0) {
         wantCounts(node, p);
       }

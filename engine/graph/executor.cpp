@@ -12,7 +12,8 @@ class StepPrepareContext final : public PrepareContext {
   StepPrepareContext(Executor::Impl& impl, const PlannedStep& step) : impl_(impl), step_(step) {}
   gpu::Device& device() override { return impl_.device; }
   bool has(std::string_view port) const override {
-    return std::any_of(step_.ports.begin(), step_.ports.end(), [&](const PlannedPort& p) { return p.name == port && p.resource != kNoResource; });
+    return std::any_of(step_.ports.begin(), step_.ports.end(),
+                       [&](const PlannedPort& p) { return p.name == port && p.resource != kNoResource; });
   }
   const scene::Traits& traits() const override { return impl_.traits; }
   const scene::Request& request() const override { return impl_.request; }
@@ -24,7 +25,8 @@ class StepPrepareContext final : public PrepareContext {
 
 }  // namespace
 
-Executor::Impl::Impl(gpu::Device& device_, Graph& graph_, Plan plan_, const scene::Traits& traits_, const scene::Request& request_, Counts known)
+Executor::Impl::Impl(gpu::Device& device_, Graph& graph_, Plan plan_, const scene::Traits& traits_, const scene::Request& request_,
+                     Counts known)
     : device(device_), graph(graph_), plan(std::move(plan_)), traits(traits_), request(request_), counts(std::move(known)) {
   resources.resize(plan.resources.size());
   uint32_t slotCount = 0;
@@ -76,7 +78,8 @@ Executor::Impl::~Impl() {
   vkDestroyCommandPool(device.handle(), commandPool, nullptr);
 }
 
-Executor::Executor(gpu::Device& device, Graph& graph, Plan plan, const scene::Traits& traits, const scene::Request& request, Counts knownCounts)
+Executor::Executor(gpu::Device& device, Graph& graph, Plan plan, const scene::Traits& traits, const scene::Request& request,
+                   Counts knownCounts)
     : impl_(std::make_unique<Impl>(device, graph, std::move(plan), traits, request, std::move(knownCounts))) {}
 
 Executor::~Executor() = default;
@@ -85,7 +88,8 @@ void Executor::importBuffer(std::string_view name, const gpu::Buffer& buffer, ui
   for (ResourceId id = 0; id < impl_->resources.size(); ++id) {
     const PlannedResource& planned = impl_->plan.resources[id];
     if (!planned.imported || planned.name != name) continue;
-    if (planned.shape.kind != ResourceKind::Buffer) throw Error(ErrorCode::BadInput, "import " + planned.name + " is an image in the plan, not a buffer");
+    if (planned.shape.kind != ResourceKind::Buffer)
+      throw Error(ErrorCode::BadInput, "import " + planned.name + " is an image in the plan, not a buffer");
     impl_->resources[id].importedBuffer = &buffer;
     impl_->resources[id].bytes = buffer.bytes();
     impl_->resources[id].versions[0] = version;
@@ -96,7 +100,8 @@ void Executor::importImage(std::string_view name, gpu::Image& image, uint64_t ve
   for (ResourceId id = 0; id < impl_->resources.size(); ++id) {
     const PlannedResource& planned = impl_->plan.resources[id];
     if (!planned.imported || planned.name != name) continue;
-    if (planned.shape.kind != ResourceKind::Image) throw Error(ErrorCode::BadInput, "import " + planned.name + " is a buffer in the plan, not an image");
+    if (planned.shape.kind != ResourceKind::Image)
+      throw Error(ErrorCode::BadInput, "import " + planned.name + " is a buffer in the plan, not an image");
     impl_->resources[id].importedImage = &image;
     impl_->resources[id].versions[0] = version;
   }

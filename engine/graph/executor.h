@@ -13,10 +13,10 @@ namespace radivox::graph {
 
 struct NodeStats {
   std::string name, type;
-  uint32_t runCount = 0;       ///< since the executor was made
+  uint32_t runCount = 0;  ///< since the executor was made
   bool ranLastFrame = false;
-  double gpuMs = 0;            ///< GPU timestamps, sum over the steps of the last run; 0 without timestamps
-  double wallMs = 0;           ///< last run, recording + waiting where the node is host-paced or ends a segment
+  double gpuMs = 0;                       ///< GPU timestamps, sum over the steps of the last run; 0 without timestamps
+  double wallMs = 0;                      ///< last run, recording + waiting where the node is host-paced or ends a segment
   std::map<std::string, double> figures;  ///< reportStat
 };
 

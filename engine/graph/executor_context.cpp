@@ -28,9 +28,7 @@ gpu::Commands& StepContext::commands() {
   return *current;
 }
 
-bool StepContext::has(std::string_view port) const {
-  return impl_.plan.steps[step_].ports[portIndex(port)].resource != kNoResource;
-}
+bool StepContext::has(std::string_view port) const { return impl_.plan.steps[step_].ports[portIndex(port)].resource != kNoResource; }
 
 const gpu::Buffer& StepContext::buffer(std::string_view port) {
   const ResourceId id = resource(port);
@@ -104,8 +102,8 @@ void StepContext::setCount(std::string_view name, uint64_t value) {
     impl_.counts[published.name] = value;
     return;
   }
-  misuse(impl_.nodeName(step_), "sets the count " + std::string(name) + " without having declared it: publishCount(\"" +
-                                    std::string(name) + "\", \"\", 0)");
+  misuse(impl_.nodeName(step_),
+         "sets the count " + std::string(name) + " without having declared it: publishCount(\"" + std::string(name) + "\", \"\", 0)");
 }
 
 void StepContext::reportProgress(double fraction) {

@@ -30,11 +30,11 @@ struct ResourceState {
   gpu::Image* importedImage = nullptr;
   std::vector<std::unique_ptr<gpu::Buffer>> grown;
   bool allocated = false;
-  bool mustZero = false;            ///< persistent and newly made
-  uint64_t bytes = 0;               ///< as asked for
-  uint64_t extent[3] = {0, 0, 0};   ///< of an image
-  std::vector<uint64_t> versions;   ///< per link of the version chain
-  uint32_t currentLink = 0;         ///< link that the memory holds now
+  bool mustZero = false;           ///< persistent and newly made
+  uint64_t bytes = 0;              ///< as asked for
+  uint64_t extent[3] = {0, 0, 0};  ///< of an image
+  std::vector<uint64_t> versions;  ///< per link of the version chain
+  uint32_t currentLink = 0;        ///< link that the memory holds now
   AccessState access;
 };
 
@@ -53,11 +53,11 @@ struct StepState {
   bool ranThisFrame = false;
   uint32_t runsThisFrame = 0;
   uint64_t paramsVersion = 0;
-  uint64_t planVersion = 0;             ///< of the parameters, when the plan was made
-  std::vector<uint64_t> seen;           ///< per port: input version of the last run
-  std::vector<uint64_t> seenBefore;     ///< of the run before
-  std::vector<uint64_t> seenCounts;     ///< per PlannedStep::neededCounts
-  bool firstRun = true;                 ///< of the last run
+  uint64_t planVersion = 0;          ///< of the parameters, when the plan was made
+  std::vector<uint64_t> seen;        ///< per port: input version of the last run
+  std::vector<uint64_t> seenBefore;  ///< of the run before
+  std::vector<uint64_t> seenCounts;  ///< per PlannedStep::neededCounts
+  bool firstRun = true;              ///< of the last run
   NodeStats stats;
 };
 
@@ -145,9 +145,7 @@ struct Executor::Impl {
   void record(VkCommandBuffer commands);
   void frameCompleted();
 
-  static double now() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
+  static double now() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 };
 
 /// What one node sees, for the life of the executor.

@@ -70,8 +70,7 @@ void Executor::Impl::allocateOutputs(uint32_t step) {
       checkBuffer(planned.name, bytes, (port.use & (UseCompute | UseRaster)) != 0);
       state.buffer = gpu::Buffer();  // the old one first: both together may not fit
       state.allocated = false;
-      state.buffer =
-          gpu::Buffer(device, planned.name, bytes, planned.hostVisible ? gpu::MemoryKind::ReadBack : gpu::MemoryKind::Device);
+      state.buffer = gpu::Buffer(device, planned.name, bytes, planned.hostVisible ? gpu::MemoryKind::ReadBack : gpu::MemoryKind::Device);
       state.bytes = bytes;
     } else {
       const gpu::ImageInfo info = imageInfo(planned.name, planned.shape);

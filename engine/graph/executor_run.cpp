@@ -249,7 +249,8 @@ void Executor::Impl::runHostPaced(uint32_t step) {
 void Executor::Impl::run() {
   const double start = now();
   if (!inFlight.empty()) {
-    throw Error(ErrorCode::BadInput, "run() while " + std::to_string(inFlight.size()) + " recorded frames are unfinished; call frameCompleted()");
+    throw Error(ErrorCode::BadInput,
+                "run() while " + std::to_string(inFlight.size()) + " recorded frames are unfinished; call frameCompleted()");
   }
   requireImports();
   requireCurrentPlan();

@@ -29,10 +29,10 @@ class Graph {
 
   /// Names are unique; throws BadInput otherwise.
   Node& add(std::string name, std::unique_ptr<Node> node);
-  /// "voxelize.occupancy", "index.occupancy". `from` may also be the name of an import ("scene.vertices", "host.gbuffer_position"); the text
-  /// up to the first dot is the node's name, the rest is the port's (port names may hold dots: "voxelize.scene.vertices").
+  /// "voxelize.occupancy", "index.occupancy". `from` may also be the name of an import ("scene.vertices", "host.gbuffer_position"); the
+  /// text up to the first dot is the node's name, the rest is the port's (port names may hold dots: "voxelize.scene.vertices").
   void connect(std::string_view from, std::string_view to);
-  void output(std::string_view endpoint);                    ///< kept alive and readable after the run
+  void output(std::string_view endpoint);  ///< kept alive and readable after the run
   void clearOutputs() { outputs_.clear(); }
   /// What a picture of this graph can be asked for: AOV name → "node.port", or "node.port.w" for one channel (x, y, z, w) of an image.
   /// Only a table of names: nothing is kept alive by it (a host calls output() for the AOVs it wants).

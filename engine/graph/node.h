@@ -48,12 +48,13 @@ enum Use : uint32_t {
 struct Port {
   std::string name;
   Access access = Access::Read;
-  Shape shape;            ///< outputs and scratch; ignored for Read (the producer's shape holds)
+  Shape shape;                       ///< outputs and scratch; ignored for Read (the producer's shape holds)
   std::optional<ResourceKind> kind;  ///< Read and Modify: what must come in, checked while compiling; unset: anything
-  std::string meaning;    ///< type, unit, meaning of 0: "E_dir per face, W/m², 0: unlit"
+  std::string meaning;               ///< type, unit, meaning of 0: "E_dir per face, W/m², 0: unlit"
   uint32_t use = UseCompute | UseTransfer;
   bool optional = false;  ///< Read: may stay unconnected. Write: made only when somebody reads it
-  bool unwanted = false;  ///< Read: not needed for this scene or request; the edge is ignored, and `unwantedReason` explains a culled producer
+  bool unwanted =
+      false;  ///< Read: not needed for this scene or request; the edge is ignored, and `unwantedReason` explains a culled producer
   std::string unwantedReason;
   bool persistent = false;  ///< Write: contents of the last run are kept and updated in part (zero-filled when made)
   bool growable = false;    ///< Write: allocated by the node itself while it runs (RecordContext::grow), never by its shape
@@ -118,7 +119,7 @@ class RecordContext {
   virtual bool has(std::string_view port) const = 0;
   virtual const gpu::Buffer& buffer(std::string_view port) = 0;
   virtual gpu::Image& image(std::string_view port) = 0;
-  virtual uint64_t count(std::string_view name) const = 0;  ///< asserts that it is known
+  virtual uint64_t count(std::string_view name) const = 0;     ///< asserts that it is known
   virtual bool changed(std::string_view inputPort) const = 0;  ///< its version differs from the one this node last ran with
   virtual bool firstRun() const = 0;                           ///< never run yet, or its parameters or plan changed
   virtual uint32_t step() const = 0;                           ///< host-paced nodes

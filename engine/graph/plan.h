@@ -23,7 +23,7 @@ struct PlannedResource {
   uint32_t versionCount = 1;  ///< links of the version chain: 1, or 1 + the number of Modify ports
   bool scratch = false;
   bool output = false;
-  uint32_t firstUse = 0;      ///< positions in Plan::steps, inclusive
+  uint32_t firstUse = 0;  ///< positions in Plan::steps, inclusive
   uint32_t lastUse = 0;
   /// Scratch resources with the same alias slot share memory (their lifetimes do not meet).
   uint32_t aliasSlot = 0xffffffffu;

@@ -23,11 +23,28 @@ class Extent {
     e.counts_.push_back(std::move(count));
     return e;
   }
-  Extent operator*(uint64_t k) const { Extent e = *this; e.scale_ *= k; e.add_ *= k; return e; }
-  Extent operator*(const std::string& count) const { Extent e = *this; e.counts_.push_back(count); return e; }
-  Extent operator+(uint64_t k) const { Extent e = *this; e.add_ += k; return e; }
+  Extent operator*(uint64_t k) const {
+    Extent e = *this;
+    e.scale_ *= k;
+    e.add_ *= k;
+    return e;
+  }
+  Extent operator*(const std::string& count) const {
+    Extent e = *this;
+    e.counts_.push_back(count);
+    return e;
+  }
+  Extent operator+(uint64_t k) const {
+    Extent e = *this;
+    e.add_ += k;
+    return e;
+  }
   /// Rounds up. Only before `+`.
-  Extent operator/(uint64_t k) const { Extent e = *this; e.divide_ *= k; return e; }
+  Extent operator/(uint64_t k) const {
+    Extent e = *this;
+    e.divide_ *= k;
+    return e;
+  }
   /// Nothing while a count is unknown; throws OutOfMemory on 64-bit overflow.
   std::optional<uint64_t> evaluate(const Counts& counts) const;
   const std::vector<std::string>& counts() const { return counts_; }

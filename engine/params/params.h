@@ -64,7 +64,7 @@ class Table {
   /// Parses and checks. Throws BadInput naming `owner`.name, the value, what is allowed, and the nearest name if unknown.
   /// Returns what became stale. `changed` counts up so that run-on-change nodes notice (only when the value differs).
   Invalidates set(std::string_view owner, std::string_view name, std::string_view text);
-  uint64_t version() const { return version_; }      ///< counts Rerun and Plan changes
+  uint64_t version() const { return version_; }          ///< counts Rerun and Plan changes
   uint64_t planVersion() const { return planVersion_; }  ///< counts Plan changes
   /// "name=value" of every parameter, in order; for stats and caches.
   std::string print() const;

@@ -39,7 +39,8 @@ std::string_view abiTag() { return RADIVOX_ABI_TAG; }
 void Registry::add(std::string name, std::string help, std::function<std::unique_ptr<graph::Node>()> make) {
   for (const NodeType& type : types_) {
     if (type.name != name) continue;
-    throw Error(ErrorCode::BadInput, "node type " + name + " comes from two modules: " + type.origin + " and " + origin_ + "; load only one");
+    throw Error(ErrorCode::BadInput,
+                "node type " + name + " comes from two modules: " + type.origin + " and " + origin_ + "; load only one");
   }
   if (library_ != nullptr) make = LoadedMaker{library_, std::move(make)};
   types_.push_back({std::move(name), std::move(help), std::move(make), origin_});

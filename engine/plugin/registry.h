@@ -70,10 +70,10 @@ struct ModuleEntry {
 /// In one source file of a module:  RADIVOX_MODULE(registerClusteredVoxel)
 /// Defines the entry point only where the module becomes a library of its own (radivox_add_module), so that many link into one program.
 #ifdef RADIVOX_SHARED_MODULE
-#define RADIVOX_MODULE(function)                                                                        \
+#define RADIVOX_MODULE(function)                                                                          \
   extern "C" __attribute__((visibility("default"))) const radivox::plugin::ModuleEntry* radivoxModule() { \
-    static const radivox::plugin::ModuleEntry entry{RADIVOX_ABI_TAG, &(function)};                       \
-    return &entry;                                                                                      \
+    static const radivox::plugin::ModuleEntry entry{RADIVOX_ABI_TAG, &(function)};                        \
+    return &entry;                                                                                        \
   }
 #else
 #define RADIVOX_MODULE(function) static_assert(true)
