@@ -1,0 +1,207 @@
+// Renders of tiny scenes through the binary: files, layers, statistics, laziness, limits, interruption.
+#include <signal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "engine/image/image.h"
+#include "tests/cli/command.h"
+
+namespace radivox::test {
+
+namespace {
+
+using nlohmann::json;
+
+class RenderCommand : public CommandTest {
+ protected:
+  std::vector<std::string> render(const std::string& scene, std::vector<std::string> more) const {
+    std::vector<std::string> all = {"render", scene, "--size", "24x16", "--set", "voxelize.resolution=16"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  void expectDone(const std::vector<std::string>& arguments) const {
+    const CommandResult result = runRadivox(arguments);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+  }
+  static const image::Layer* find(const std::vector<image::Layer>& layers, const std::string& name) {
+    const auto found = std::find_if(layers.begin(), layers.end(), [&](const image::Layer& l) { return l.name == name; });
+    return found == layers.end() ? nullptr : &*found;
+  }
+};
+
+TEST_F(RenderCommand, WritesTheLayersAskedForAndTheyAddUp) {
+  ASSERT_NO_FATAL_FAILURE(expectDone(
+      render("builtin:cornell_point", {"--validate", "--out", path("a.exr"), "--out", path("a.png"), "--stats", path("a.json"), "--aov",
+                                       "color,direct,indirect,irradiance_direct,irradiance_indirect,albedo,"
+                                       "normal,position,depth,face,cluster"})));
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.exr", "a.json", "a.png"}));
+  const std::vector<image::Layer> layers = image::readExr(path("a.exr"));
+  std::set<std::string> names;
+  for (const image::Layer& layer : layers) {
+    names.insert(layer.name);
+    EXPECT_EQ(layer.image.width, 24u) << layer.name;
+    EXPECT_EQ(layer.image.height, 16u) << layer.name;
+    EXPECT_EQ(layer.image.channels, layer.name == "depth" || layer.name == "face" || layer.name == "cluster" ? 1u : 3u) << layer.name;
+    for (const float value : layer.image.data) ASSERT_TRUE(std::isfinite(value)) << layer.name;
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"color", "direct", "indirect", "irradiance_direct", "irradiance_indirect", "albedo", "normal",
+                                          "position", "depth", "face", "cluster"}));
+  // L = (direct + indirect) and each = ρE/π: the box has no emitters and no sky.
+  const auto at = [&](const char* name, size_t i) { return static_cast<double>(find(layers, name)->image.data[i]); };
+  double indirect = 0;
+  for (size_t i = 0; i < 24 * 16 * 3; ++i) {
+    const double tolerance = 1e-5 * (1.0 + at("color", i));
+    EXPECT_NEAR(at("color", i), at("direct", i) + at("indirect", i), tolerance);
+    EXPECT_NEAR(at("direct", i), at("albedo", i) * at("irradiance_direct", i) / M_PI, tolerance);
+    EXPECT_NEAR(at("indirect", i), at("albedo", i) * at("irradiance_indirect", i) / M_PI, tolerance);
+    indirect += at("indirect", i);
+  }
+  EXPECT_GT(indirect, 0.0);
+  for (size_t i = 0; i < 24 * 16; ++i) {
+    const bool surface = at("depth", i) > 0;
+    const double length = std::hypot(at("normal", 3 * i), at("normal", 3 * i + 1), at("normal", 3 * i + 2));
+    EXPECT_NEAR(length, surface ? 1.0 : 0.0, 1e-3);
+  }
+  const image::Image png = image::readPng(path("a.png"));
+  EXPECT_EQ(png.width, 24u);
+  EXPECT_EQ(png.height, 16u);
+  EXPECT_EQ(json::parse(read("a.json")).at("validation_messages"), 0);
+}
+
+TEST_F(RenderCommand, OneAovIsWrittenAsRgb) {
+  for (const char* aov : {"albedo", "depth"}) {
+    ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--out", path("a.exr"), "--aov", aov})));
+    const auto layers = image::readExr(path("a.exr"));
+    ASSERT_EQ(layers.size(), 1u) << aov;
+    EXPECT_EQ(layers[0].name, "color") << aov;
+    EXPECT_EQ(layers[0].image.channels, 3u) << aov;
+    EXPECT_GT(image::meanOf(layers[0].image), 0.0) << aov;
+  }
+}
+
+TEST_F(RenderCommand, EveryAovHasAPreview) {
+  for (const char* aov : {"color", "indirect", "albedo", "normal", "position", "depth", "face", "cluster"}) {
+    ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--out", path("a.png"), "--aov", aov})));
+    EXPECT_GT(image::meanOf(image::readPng(path("a.png"))), 0.01) << aov;
+  }
+}
+
+TEST_F(RenderCommand, ZeroBouncesLeaveTheIndirectChainOut) {
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--bounces", "0", "--out", path("a.exr"), "--stats", path("a.json"),
+                                                                      "--aov", "color,direct,indirect,irradiance_indirect"})));
+  const auto layers = image::readExr(path("a.exr"));
+  for (const char* name : {"indirect", "irradiance_indirect"}) {
+    ASSERT_NE(find(layers, name), nullptr);
+    for (const float value : find(layers, name)->image.data) ASSERT_EQ(value, 0.f);
+  }
+  EXPECT_EQ(find(layers, "color")->image.data, find(layers, "direct")->image.data);
+  const json stats = json::parse(read("a.json"));
+  for (const char* node : {"voxelize", "cluster", "visibility", "bounce", "gather", "shade"}) {
+    EXPECT_TRUE(stats.at("culled").contains(node)) << node;
+    EXPECT_FALSE(stats.at("nodes").contains(node)) << node;
+  }
+  EXPECT_EQ(stats.at("request").at("bounces"), 0);
+  // Nothing but black to write: still a file.
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--bounces", "0", "--out", path("b.exr"), "--aov", "indirect"})));
+  EXPECT_EQ(image::meanOf(image::readExr(path("b.exr")).at(0).image), 0.0);
+}
+
+TEST_F(RenderCommand, StatisticsSayWhatRan) {
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--out", path("a.exr"), "--stats", path("a.json"), "--frames", "3",
+                                                                      "--set", "lights.shadow_resolution=512"})));
+  const json stats = json::parse(read("a.json"));
+  EXPECT_FALSE(stats.at("device").at("name").get<std::string>().empty());
+  EXPECT_EQ(stats.at("scene").at("triangles"), 30);
+  EXPECT_EQ(stats.at("scene").at("lights").at("point"), 1);
+  EXPECT_EQ(stats.at("params").at("voxelize.resolution"), 16);
+  EXPECT_EQ(stats.at("params").at("lights.shadow_resolution"), 512);
+  EXPECT_EQ(stats.at("request").at("width"), 24);
+  EXPECT_EQ(stats.at("request").at("bounces"), "all");
+  EXPECT_GT(stats.at("counts").at("voxels"), 0);
+  EXPECT_GE(stats.at("counts").at("faces"), stats.at("counts").at("clusters"));
+  EXPECT_GT(stats.at("bytes_per_voxel"), 0.0);
+  // Memory: the device holds at least what the graph's resources ask for; the peak at least what is held now.
+  const json& memory = stats.at("memory");
+  uint64_t sum = 0;
+  for (const auto& [name, resource] : memory.at("resources").items()) sum += resource.at("bytes").get<uint64_t>();
+  EXPECT_EQ(memory.at("resources_total"), sum);
+  EXPECT_GE(memory.at("device_peak"), memory.at("device_current"));
+  // Lazy: the first of three equal frames does the work, the others nothing.
+  ASSERT_EQ(stats.at("frames").size(), 3u);
+  EXPECT_TRUE(stats.at("frames")[0].at("ran").size() > 10) << stats.at("frames")[0];
+  EXPECT_EQ(stats.at("frames")[1].at("ran"), json::array());
+  EXPECT_EQ(stats.at("frames")[2].at("ran"), json::array());
+  for (const auto& [name, node] : stats.at("nodes").items()) EXPECT_EQ(node.at("runs"), 1) << name;
+  const json& wall = stats.at("wall_ms");
+  const double phases = wall.at("load").get<double>() + wall.at("prepare").get<double>() + wall.at("run").get<double>() +
+                        wall.at("download").get<double>() + wall.at("write").get<double>();
+  EXPECT_NEAR(phases, wall.at("total").get<double>(), 0.05 * phases);
+}
+
+TEST_F(RenderCommand, TheSameCommandWritesTheSameFile) {
+  for (const char* name : {"a", "b"}) {
+    ASSERT_NO_FATAL_FAILURE(
+        expectDone(render("builtin:cornell", {"--out", path(std::string(name) + ".exr"), "--out", path(std::string(name) + ".png")})));
+  }
+  EXPECT_EQ(read("a.exr"), read("b.exr"));
+  EXPECT_EQ(read("a.png"), read("b.png"));
+}
+
+TEST_F(RenderCommand, SupersamplingIsTheMeanOfALargerPicture) {
+  const std::vector<std::string> scene = {"render", "builtin:cornell_point", "--graph", "direct", "--aov", "color,albedo"};
+  auto large = scene, small = scene;
+  large.insert(large.end(), {"--size", "48x32", "--out", path("large.exr")});
+  small.insert(small.end(), {"--size", "24x16", "--supersample", "2", "--out", path("small.exr")});
+  ASSERT_NO_FATAL_FAILURE(expectDone(large));
+  ASSERT_NO_FATAL_FAILURE(expectDone(small));
+  const auto a = image::readExr(path("large.exr")), b = image::readExr(path("small.exr"));
+  for (const char* name : {"color", "albedo"}) {
+    EXPECT_EQ(image::blockMeans(find(a, name)->image, 2).data, find(b, name)->image.data) << name;
+  }
+}
+
+TEST_F(RenderCommand, HardestResolutionWorksOrIsRefusedCleanly) {
+  const CommandResult result =
+      runRadivox({"render", "builtin:plane", "--size", "8x8", "--set", "voxelize.resolution=1024", "--out", path("a.exr")});
+  EXPECT_TRUE(result.exitCode == 0 || result.exitCode == 4) << result.exitCode << result.err;
+  EXPECT_EQ(files().size(), result.exitCode == 0 ? 1u : 0u);
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), result.exitCode == 0 ? 0 : 1) << result.err;
+}
+
+TEST_F(RenderCommand, AnEmptySceneIsAPicture) {
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:empty", {"--out", path("a.exr"), "--out", path("a.png")})));
+  EXPECT_EQ(image::meanOf(image::readExr(path("a.exr")).at(0).image), 0.0);
+}
+
+TEST_F(RenderCommand, InterruptionLeavesNothing) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    CommandSetup setup;
+    setup.signal = signal;
+    setup.signalAfterMs = 300;
+    const std::vector<std::string> before = files();
+    // Many frames: certainly still at work when the signal comes.
+    const CommandResult result = runRadivox(
+        {"render", "builtin:cornell_point", "--size", "512x512", "--frames", "10000", "--out", path("a.exr"), "--stats", path("a.json")},
+        setup);
+    EXPECT_EQ(result.exitCode, 130) << result.err;
+    EXPECT_EQ(result.err, "radivox: interrupted\n");
+    EXPECT_EQ(files(), before);
+  }
+}
+
+TEST_F(RenderCommand, BuiltinScenesComeBackFromAFile) {
+  ASSERT_NO_FATAL_FAILURE(expectDone({"scene", "cornell_point", "--out", path("c.glb")}));
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--out", path("a.exr")})));
+  ASSERT_NO_FATAL_FAILURE(expectDone(render(path("c.glb"), {"--out", path("b.exr")})));
+  const auto a = image::readExr(path("a.exr")), b = image::readExr(path("b.exr"));
+  EXPECT_GT(image::psnr(a.at(0).image, b.at(0).image), 50.0);
+}
+
+}  // namespace
+
+}  // namespace radivox::test
