@@ -29,7 +29,9 @@ class GpuScene {
  public:
   GpuScene(gpu::Device& device, const Scene& scene, const LightOptions& options = {});
 
-  /// New versions of scene.info / scene.lights / scene.shadow_views; geometry keeps its version.
+  // The setters need a device that is done with earlier frames; call importInto again after them.
+  /// Lights and sky of `scene`: new versions of scene.info, .lights, .shadow_views. Geometry keeps its version. Counts of lights and
+  /// shadow layers may change, and with them a plan's shapes.
   void setLights(const Scene& scene);
   void setCamera(const CameraDescription& camera, uint32_t width, uint32_t height);
   void importInto(graph::Executor& executor) const;
@@ -42,6 +44,7 @@ class GpuScene {
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
+  void uploadTextures(const Scene& scene);
   gpu::Device& device_;
   LightOptions options_;
   gpu::Buffer vertices_, indices_, triangleMaterials_, materials_, textureTable_, info_, lights_, shadowViews_, emissive_, camera_;
