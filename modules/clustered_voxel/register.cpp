@@ -3,15 +3,25 @@
 #include "modules/clustered_voxel/filter/filter.h"
 #include "modules/clustered_voxel/gather/gather.h"
 #include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
+#include "modules/clustered_voxel/index/index.h"
 #include "modules/clustered_voxel/inject/inject.h"
 #include "modules/clustered_voxel/inspect/inspect.h"
 #include "modules/clustered_voxel/mark/mark.h"
 #include "modules/clustered_voxel/shade/shade.h"
+#include "modules/clustered_voxel/visibility/visibility.h"
+#include "modules/clustered_voxel/voxelize/faces.h"
+#include "modules/clustered_voxel/voxelize/surface.h"
+#include "modules/clustered_voxel/voxelize/voxelize.h"
 
 namespace radivox::clustered_voxel {
 
 // In reading order: what each stage writes, the next ones read (docs/data_flow.md).
 void registerNodes(plugin::Registry& registry) {
+  registry.add<Voxelize>("which voxels the surfaces touch, exactly and conservatively");
+  registry.add<Index>("from a voxel's place to its number, and bricks to the nearest voxel");
+  registry.add<Faces>("which of a voxel's six faces carry surface");
+  registry.add<Surface>("area, albedo, mean normal, position and emission of voxel faces");
+  registry.add<Visibility>("what each voxel face sees: form factors by counting rays");
   registry.add<Inject>("direct light at voxel faces, by shadow-map flux or the paper's points");
   registry.add<Mark>("voxel faces that this view needs");
   registry.add<Gather>("irradiance of the needed faces from their visible clusters, lazily");

@@ -13,7 +13,7 @@ struct Grid {
   uvec3 size;       // voxels
   uvec3 bricks;     // ceil(size / 4): bricks of 4×4×4 voxels
   uint brickCount;  // product
-  uint pad;
+  uint singleSided; // 1: surfaces reflect on the back only where their material is double-sided (sides=gltf); 0: on both sides
 };
 
 // Faces of a voxel, f = 0…5: +x −x +y −y +z −z. axis = f >> 1, negative if f & 1.
@@ -45,6 +45,8 @@ struct Cluster {
 // direction bin b (6 bins: the dominant axis of the direction, as faces are numbered).
 RADIVOX_CONST uint kEntryIdMask = 0x00ffffffu;
 RADIVOX_CONST uint kMissBase = 0x00fffff0u;
+// Not a direction but black: the ray met the back of a one-sided surface (sides=gltf), which lets nothing pass and reflects nothing.
+RADIVOX_CONST uint kAbsorbed = kMissBase + 6u;
 RADIVOX_CONST uint kMaxRays = 256u;
 
 // Row of face s: entries [rowStart[s], rowStart[s+1]) of the chunk s / kRowsPerChunk, counted from that chunk's first entry; a

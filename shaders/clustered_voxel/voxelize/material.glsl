@@ -1,0 +1,109 @@
+// What a piece of surface carries: how much of it is there (alpha mask), its albedo, its emission. Textures are read at points spread
+// over the piece. The includer declares the extensions of shared/texture.glsl.
+#ifndef RADIVOX_VOXELIZE_MATERIAL_GLSL
+#define RADIVOX_VOXELIZE_MATERIAL_GLSL
+#include "clustered_voxel/voxelize/piece.glsl"
+#include "shared/texture.glsl"
+
+layout(constant_id = 0) const bool kTextured = false;  // some material has a texture
+layout(constant_id = 1) const bool kMasked = false;    // some material has an alpha mask
+layout(constant_id = 2) const bool kEmissive = false;  // some material emits
+
+layout(set = 0, binding = 4, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer Textures { Texture textures[]; };
+
+const uint kMaskedPoints = 16u;   // a sixteenth of a piece is the least that an alpha mask leaves or takes
+const uint kTexturedPoints = 4u;
+
+// Mip level whose texels are about as large as a point's share of the piece.
+uint levelOf(Triangle t, Piece piece, uint count, vec2 uv[3], uint texture_) {
+  precise vec2 a = uv[1] - uv[0];
+  precise vec2 b = uv[2] - uv[0];
+  precise float texels = abs(a.x * b.y - a.y * b.x) * float(textures[texture_].width) * float(textures[texture_].height);
+  // Of the triangle's parallelogram, whose area is |normal|.
+  precise float share = piece.area * abs(piece.normal.z) * preciseReciprocal(abs(t.normal.z)) / float(count);
+  precise float texelsPerPoint = texels * share;
+  int exponent = int(floatBitsToUint(texelsPerPoint) >> 23) - 127;  // floor(log₂)
+  return min(uint(max(exponent, 0)) / 2u, textures[texture_].levelCount - 1u);
+}
+
+vec2 interpolate(vec2 uv[3], vec2 weights) {
+  precise vec2 at = uv[0] + (uv[1] - uv[0]) * weights.x + (uv[2] - uv[0]) * weights.y;
+  return at;
+}
+
+struct Surface {
+  float coverage;  // fraction of the piece that is there
+  vec3 albedo;     // means over what is there
+  vec3 emission;   // L_e
+  vec3 point;      // relative to the voxel's low corner, turned
+};
+
+Surface surfaceOf(Triangle t, ivec3 voxel, Piece piece, uint material) {
+  Surface surface = Surface(1.0, materials[material].albedo, kEmissive ? materials[material].emission : vec3(0.0), piece.middle);
+  bool isMasked = kMasked && (materials[material].flags & kMaterialAlphaMask) != 0u;
+  uint base = kTextured ? materials[material].baseTexture : kNoTexture;
+  uint emissive = kTextured && kEmissive ? materials[material].emissiveTexture : kNoTexture;
+  if (base == kNoTexture && emissive == kNoTexture) {
+    if (isMasked && materials[material].alpha < materials[material].alphaCutoff) surface.coverage = 0.0;
+    return surface;
+  }
+  vec2 uvBase[3], uvEmissive[3];
+  for (uint c = 0u; c < 3u; ++c) {
+    uint vertex = indices[3u * t.id + c];
+    uvBase[c] = vertices[vertex].uvBase;
+    uvEmissive[c] = vertices[vertex].uvEmissive;
+  }
+  isMasked = isMasked && base != kNoTexture;
+  uint count = isMasked ? kMaskedPoints : kTexturedPoints;
+  // A mask is cut at its finest level: averaged alpha would thicken or lose thin leaves.
+  uint levelBase = base == kNoTexture || isMasked ? 0u : levelOf(t, piece, count, uvBase, base);
+  uint levelEmissive = emissive == kNoTexture ? 0u : levelOf(t, piece, count, uvEmissive, emissive);
+  uint covered = 0u;
+  precise vec3 albedo = vec3(0.0);
+  precise vec3 emission = vec3(0.0);
+  precise vec3 point = vec3(0.0);
+  for (uint s = 0u; s < count; ++s) {
+    vec3 at = pointOnPiece(piece, s, count);
+    vec2 weights = barycentricOf(t, voxel, at);
+    vec4 texel = base == kNoTexture ? vec4(1.0) : sampleTextureLevel(textures[base], interpolate(uvBase, weights), levelBase);
+    precise float alpha = texel.a * materials[material].alpha;
+    if (isMasked && alpha < materials[material].alphaCutoff) continue;
+    ++covered;
+    albedo = albedo + texel.rgb;
+    point = point + at;
+    if (emissive != kNoTexture)
+      emission = emission + sampleTextureLevel(textures[emissive], interpolate(uvEmissive, weights), levelEmissive).rgb;
+  }
+  if (covered == 0u) {
+    surface.coverage = 0.0;
+    return surface;
+  }
+  float scale = preciseReciprocal(float(covered));
+  precise vec3 meanAlbedo = surface.albedo * (albedo * scale);
+  precise vec3 meanPoint = point * scale;
+  surface.albedo = meanAlbedo;
+  if (emissive != kNoTexture) {
+    precise vec3 meanEmission = surface.emission * (emission * scale);
+    surface.emission = meanEmission;
+  }
+  if (isMasked) {
+    surface.coverage = float(covered) / float(count);  // count is a power of two: exact
+    surface.point = meanPoint;
+  }
+  return surface;
+}
+
+// Does the side of the surface that looks along −normal reflect?
+bool reflectsOnBack(uint material) { return grid.singleSided == 0u || (materials[material].flags & kMaterialDoubleSided) != 0u; }
+
+// What the piece adds to the face pair of turned axis k: area · |n·e|, h². Faces exist iff its fixed-point value is above 0.
+float weightOf(Piece piece, Surface surface, uint k) {
+  precise float weight = piece.area * surface.coverage * abs(piece.normal[k]);
+  return weight;
+}
+
+uint worldAxis(Triangle t, uint k) { return (t.axis + 1u + k) % 3u; }
+
+#endif

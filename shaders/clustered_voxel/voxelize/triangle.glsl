@@ -1,0 +1,165 @@
+// A triangle in grid space, and the one test that decides which voxels it overlaps.
+//
+// Exact separating-axis test of the triangle against the closed cube dilated by kDilation on every side. Rounding moves no corner and
+// no plane by more than kDilation, so the result holds every voxel that the exact test finds, and none that the exact test with
+// cubes dilated by 2·kDilation does not. Triangles longer than kLongTriangle edges are decided with double-floats: at distance d a
+// float product is only good to d·2⁻²³ voxel edges. Only +, − and × are used, so every device finds the same voxels.
+#ifndef RADIVOX_VOXELIZE_TRIANGLE_GLSL
+#define RADIVOX_VOXELIZE_TRIANGLE_GLSL
+#include "clustered_voxel/voxelize/double_float.glsl"
+#include "shared/scene.h"
+#include "shared/voxel_codec.h"
+
+layout(set = 0, binding = 0, scalar) readonly buffer RadivoxGrid { Grid grid; };
+layout(set = 0, binding = 1, scalar) readonly buffer RadivoxVertices { Vertex vertices[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer RadivoxIndices { uint indices[]; };
+
+const float kDilation = 5e-5;      // voxel edges
+const float kLongTriangle = 64.0;  // voxel edges
+const float kLeastNormal = 1e-30;  // h²; below it a triangle has no plane, and is tested by its edges alone
+
+// All vectors have their components turned so that z is the dominant axis of the normal (turn): columns run along z, and no component
+// is chosen at run time.
+struct Triangle {
+  uint id;
+  uint axis;        // what z stands for: the dominant axis of the normal; without a plane, the axis of least extent
+  vec3 p[3];        // grid space
+  vec3 edge[3];     // p1 − p0, p2 − p1, p0 − p2, rounded
+  vec3 edgeLow[3];  // what rounding left; 0 unless isLong
+  vec3 normal;      // edge0 × edge1 = twice the area along the geometric normal, h²
+  vec3 normalLow;
+  ivec3 low;        // voxels that the dilated bounds reach, inclusive, inside the grid
+  ivec3 high;
+  bool isLong;
+  bool hasPlane;
+  bool isValid;     // finite, and somewhere in the grid
+};
+
+vec3 turn(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
+vec3 turnBack(vec3 v, uint axis) { return axis == 0u ? v.zxy : (axis == 1u ? v.yzx : v); }
+ivec3 turn(ivec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
+ivec3 turnBack(ivec3 v, uint axis) { return axis == 0u ? v.zxy : (axis == 1u ? v.yzx : v); }
+
+DoubleFloat crossTerm(vec3 a, vec3 aLow, vec3 b, vec3 bLow, uint i, uint j) {
+  return differenceOfProducts(DoubleFloat(a[i], aLow[i]), DoubleFloat(b[j], bLow[j]), DoubleFloat(a[j], aLow[j]),
+                              DoubleFloat(b[i], bLow[i]));
+}
+
+Triangle loadTriangle(uint id) {
+  Triangle t;
+  t.id = id;
+  for (uint c = 0u; c < 3u; ++c) t.p[c] = toGridSpace(grid, vertices[indices[3u * id + c]].position);
+  vec3 least = min(t.p[0], min(t.p[1], t.p[2]));
+  vec3 most = max(t.p[0], max(t.p[1], t.p[2]));
+  precise vec3 extent = most - least;
+  precise vec3 dilatedLeast = least - kDilation;
+  precise vec3 dilatedMost = most + kDilation;
+  t.isValid = all(greaterThanEqual(extent, vec3(0.0))) && all(lessThan(abs(least), vec3(1e6))) && all(lessThan(abs(most), vec3(1e6)));
+  // A closed cube whose upper plane is just touched counts as well: ceil − 1 and not floor.
+  t.low = max(ivec3(ceil(clamp(dilatedLeast, -2.0, 2048.0))) - 1, ivec3(0));
+  t.high = min(ivec3(floor(clamp(dilatedMost, -2.0, 2048.0))), ivec3(grid.size) - 1);
+  t.isValid = t.isValid && all(lessThanEqual(t.low, t.high));
+  t.isLong = max(extent.x, max(extent.y, extent.z)) > kLongTriangle;
+  for (uint e = 0u; e < 3u; ++e) {
+    for (uint k = 0u; k < 3u; ++k) {
+      DoubleFloat difference = exactSum(t.p[(e + 1u) % 3u][k], -t.p[e][k]);
+      t.edge[e][k] = difference.hi;
+      t.edgeLow[e][k] = t.isLong ? difference.lo : 0.0;
+    }
+  }
+  for (uint k = 0u; k < 3u; ++k) {
+    DoubleFloat component = crossTerm(t.edge[0], t.edgeLow[0], t.edge[1], t.edgeLow[1], (k + 1u) % 3u, (k + 2u) % 3u);
+    t.normal[k] = component.hi;
+    t.normalLow[k] = component.lo;
+  }
+  vec3 size = abs(t.normal);
+  t.hasPlane = max(size.x, max(size.y, size.z)) > kLeastNormal;
+  if (t.hasPlane) {
+    t.axis = size.x >= size.y && size.x >= size.z ? 0u : (size.y >= size.z ? 1u : 2u);
+  } else {
+    t.axis = extent.x <= extent.y && extent.x <= extent.z ? 0u : (extent.y <= extent.z ? 1u : 2u);
+  }
+  for (uint c = 0u; c < 3u; ++c) {
+    t.p[c] = turn(t.p[c], t.axis);
+    t.edge[c] = turn(t.edge[c], t.axis);
+    t.edgeLow[c] = turn(t.edgeLow[c], t.axis);
+  }
+  t.normal = turn(t.normal, t.axis);
+  t.normalLow = turn(t.normalLow, t.axis);
+  t.low = turn(t.low, t.axis);
+  t.high = turn(t.high, t.axis);
+  return t;
+}
+
+// Is the corner where edge e starts on this side of the voxel's centre, seen along an axis: a_i·q_j − a_j·q_i, q relative to the centre.
+float edgeSide(Triangle t, uint e, uint i, uint j, vec3 centre) {
+  precise float qi = t.p[e][i] - centre[i];
+  precise float qj = t.p[e][j] - centre[j];
+  precise float side = t.edge[e][i] * qj - t.edge[e][j] * qi;
+  if (t.isLong) {
+    DoubleFloat exact = differenceOfProducts(DoubleFloat(t.edge[e][i], t.edgeLow[e][i]), exactSum(t.p[e][j], -centre[j]),
+                                             DoubleFloat(t.edge[e][j], t.edgeLow[e][j]), exactSum(t.p[e][i], -centre[i]));
+    side = exact.hi;
+  }
+  return side;
+}
+
+// Do the three edges, seen along axis k, part the triangle from the voxel? Both ends of an edge have one value; the corner opposite has that
+// value plus twice the projected area, which is the same for all three edges.
+bool isSeparatedAlong(Triangle t, uint k, vec3 centre) {
+  uint i = (k + 1u) % 3u, j = (k + 2u) % 3u;
+  for (uint e = 0u; e < 3u; ++e) {
+    float side = edgeSide(t, e, i, j, centre);
+    precise float opposite = side + t.normal[k];
+    precise float radius = (0.5 + kDilation) * (abs(t.edge[e][i]) + abs(t.edge[e][j]));
+    if (min(side, opposite) > radius || max(side, opposite) < -radius) return true;
+  }
+  return false;
+}
+
+bool isSeparatedByPlane(Triangle t, vec3 centre) {
+  precise vec3 q = t.p[0] - centre;
+  precise float height = t.normal.x * q.x + t.normal.y * q.y + t.normal.z * q.z;
+  if (t.isLong) {
+    DoubleFloat exact = DoubleFloat(0.0, 0.0);
+    for (uint k = 0u; k < 3u; ++k)
+      exact = add(exact, multiply(DoubleFloat(t.normal[k], t.normalLow[k]), exactSum(t.p[0][k], -centre[k])));
+    height = exact.hi;
+  }
+  precise float radius = (0.5 + kDilation) * (abs(t.normal.x) + abs(t.normal.y) + abs(t.normal.z));
+  return abs(height) > radius;
+}
+
+bool isSeparatedByBounds(Triangle t, vec3 centre) {
+  precise vec3 least = min(t.p[0], min(t.p[1], t.p[2])) - centre;
+  precise vec3 most = max(t.p[0], max(t.p[1], t.p[2])) - centre;
+  precise float radius = 0.5 + kDilation;
+  return any(greaterThan(least, vec3(radius))) || any(lessThan(most, vec3(-radius)));
+}
+
+// What a stage does with a triangle and a voxel that it overlaps; defined by the including shader. `voxel` is turned, as `t` is.
+void visitVoxel(Triangle t, ivec3 voxel);
+
+// Visits the voxels of one column along z. Each (triangle, voxel) pair is met once, whichever way the columns are found.
+void visitColumn(Triangle t, ivec2 column) {
+  if (any(lessThan(column, t.low.xy)) || any(greaterThan(column, t.high.xy))) return;
+  vec3 centre = vec3(vec2(column) + 0.5, 0.0);
+  if (isSeparatedAlong(t, 2u, centre)) return;
+  int first = t.low.z, last = t.high.z;
+  if (t.hasPlane) {
+    // Where the plane passes the column; slopes are at most 1. Only a guess at the range (0.02 bears its rounding): the tests decide.
+    vec2 slope = -t.normal.xy / t.normal.z;
+    float middle = t.p[0].z + dot(slope, centre.xy - t.p[0].xy);
+    float reach = 0.5 * (abs(slope.x) + abs(slope.y)) + 0.02;
+    first = max(first, int(ceil(clamp(middle - reach, -2.0, 2048.0))) - 1);
+    last = min(last, int(floor(clamp(middle + reach, -2.0, 2048.0))));
+  }
+  for (int z = first; z <= last; ++z) {
+    centre.z = float(z) + 0.5;
+    if (!isSeparatedByBounds(t, centre) && !isSeparatedByPlane(t, centre) && !isSeparatedAlong(t, 0u, centre) &&
+        !isSeparatedAlong(t, 1u, centre))
+      visitVoxel(t, ivec3(column, z));
+  }
+}
+
+#endif
