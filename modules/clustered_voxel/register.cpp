@@ -1,5 +1,8 @@
 #include "engine/graph/node.h"
 #include "engine/plugin/registry.h"
+#include "modules/clustered_voxel/bounce/bounce.h"
+#include "modules/clustered_voxel/cluster/cluster.h"
+#include "modules/clustered_voxel/cluster/members.h"
 #include "modules/clustered_voxel/filter/filter.h"
 #include "modules/clustered_voxel/gather/gather.h"
 #include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
@@ -8,6 +11,7 @@
 #include "modules/clustered_voxel/inspect/inspect.h"
 #include "modules/clustered_voxel/mark/mark.h"
 #include "modules/clustered_voxel/shade/shade.h"
+#include "modules/clustered_voxel/visibility/transfer.h"
 #include "modules/clustered_voxel/visibility/visibility.h"
 #include "modules/clustered_voxel/voxelize/faces.h"
 #include "modules/clustered_voxel/voxelize/surface.h"
@@ -22,7 +26,11 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Faces>("which of a voxel's six faces carry surface");
   registry.add<Surface>("area, albedo, mean normal, position and emission of voxel faces");
   registry.add<Visibility>("what each voxel face sees: form factors by counting rays");
+  registry.add<Cluster>("groups faces that lie near each other and face the same way");
+  registry.add<Members>("what each cluster holds, and its means");
+  registry.add<Transfer>("form factors between clusters, a sparse matrix");
   registry.add<Inject>("direct light at voxel faces, by shadow-map flux or the paper's points");
+  registry.add<Bounce>("light that surfaces pass on among themselves, to a stated residual");
   registry.add<Mark>("voxel faces that this view needs");
   registry.add<Gather>("irradiance of the needed faces from their visible clusters, lazily");
   registry.add<Filter>("smooths gathered irradiance over surfaces, not across walls");

@@ -1,0 +1,208 @@
+#include "modules/clustered_voxel/bounce/bounce.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "shaders/shared/voxel.h"
+
+namespace radivox::clustered_voxel {
+
+using graph::Extent;
+using graph::Shape;
+using shared::BounceControl;
+using shared::BouncePush;
+
+namespace {
+
+constexpr uint32_t kGroup = 64;
+constexpr uint32_t kRowsPerGroup = 8;
+constexpr VkDeviceSize kStatusBytes = 16;
+
+gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount) {
+  return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
+                                                        .bindings = std::vector(bindingCount, gpu::BindingType::StorageBuffer),
+                                                        .pushConstantBytes = sizeof(BouncePush)});
+}
+
+}  // namespace
+
+Bounce::Bounce()
+    : table_({params::choice("solver", &solver_, {"chebyshev", "plain"}, "accelerated, or plain iteration (for comparison)",
+                             params::Invalidates::Rerun),
+              params::number("residual", &residual_, {1e-7, 0.1}, "where to stop: largest residual over the largest source",
+                             params::Invalidates::Rerun),
+              params::number("iterations", &iterations_, {1, 20000}, "most iterations", params::Invalidates::Rerun)}) {}
+
+void Bounce::declare(graph::Declaration& d) {
+  const uint32_t bounces = d.request.bounces;
+  if (bounces == 0) {
+    d.leaveOut("direct light only");
+    return;
+  }
+  if (bounces != scene::kAllBounces && bounces - 1 > iterations_)
+    throw Error(ErrorCode::BadInput, "bounces=" + std::to_string(bounces) + ": bounce.iterations=" + std::to_string(iterations_) +
+                                         " allows at most " + std::to_string(iterations_ + 1) +
+                                         "; ask for all bounces, or raise bounce.iterations");
+  const bool needsMatrix = bounces > 1 || d.traits.emittersByRays;
+  for (const char* name : {"row_start", "entries", "sky"}) {
+    graph::Port& port = d.read(name, "form factors between clusters");
+    port.optional = port.unwanted = !needsMatrix;
+    port.unwantedReason = "one bounce needs no light between clusters";
+  }
+  d.read("clusters", "Cluster");
+  d.read("members", "face ids by cluster");
+  d.read("labels", "cluster id of each face");
+  d.read("faces", "Face");
+  graph::Port& emission = d.read("emission", "mean B_e of each face, W/m²");
+  emission.optional = emission.unwanted = !d.traits.emittersByRays;
+  emission.unwantedReason = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
+  d.read("face_irradiance", "E_dir of each face, W/m²");
+  d.read("direct_radiosity", "reflected direct light of each cluster, W/m²");
+  d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");
+  d.write("face_radiosity", Shape::buffer(12, Extent::of("faces")), "reflected radiosity, W/m²");
+  d.readBack("status", Shape::buffer(4, 4),
+             "iterations; residual (float bits); 1: fell back; 1: residual reached, 2: rounding, 0: neither");
+  d.scratch("control", Shape::buffer(sizeof(BounceControl), 1), "state of the solver",
+            graph::UseCompute | graph::UseTransfer | graph::UseIndirect);
+  d.scratch("source", Shape::buffer(12, Extent::of("clusters")), "B⁰");
+  d.scratch("indirect", Shape::buffer(12, Extent::of("clusters")), "E_ind = F B");
+  if (needsMatrix) {
+    d.scratch("iterate", Shape::buffer(24, Extent::of("clusters")), "B before and after a step");
+    d.scratch("steps", Shape::buffer(12, Extent::of("clusters")), "last change of B");
+  }
+  if (d.traits.emittersByRays) {
+    d.scratch("mean_emission", Shape::buffer(12, Extent::of("clusters")), "B_e of clusters");
+    d.scratch("received", Shape::buffer(12, Extent::of("clusters")), "E_emit = F B_e");
+  }
+}
+
+void Bounce::prepare(graph::PrepareContext& context) {
+  gpu::Device& device = context.device();
+  if (context.has("emission")) {
+    meanEmission_ = makePipeline(device, "clustered_voxel/bounce/mean_emission.comp", 5);
+    receiveEmission_ = makePipeline(device, "clustered_voxel/bounce/receive_emission.comp", 3);
+  }
+  if (context.has("entries")) {
+    source_ = makePipeline(device, "clustered_voxel/bounce/source.comp", 6);
+    begin_ = makePipeline(device, "clustered_voxel/bounce/begin.comp", 4);
+    sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 7);
+    finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 4);
+  }
+  finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 6);
+}
+
+BounceControl Bounce::makeControl(uint32_t clusterCount, bool counted) const {
+  BounceControl control{};
+  const uint32_t groups = (clusterCount + kRowsPerGroup - 1) / kRowsPerGroup;
+  constexpr uint32_t kRow = gpu::Commands::kMaxGroupsX;
+  control.groups = groups <= kRow ? glm::uvec3(groups, 1, 1) : glm::uvec3(kRow, (groups + kRow - 1) / kRow, 1);
+  control.phase = counted ? shared::kPhaseCounted : solver_ == Solver::Plain ? shared::kPhasePlain : shared::kPhaseWarmUp;
+  control.omega = glm::vec3(1.f);
+  control.windowMeasure = std::numeric_limits<float>::max();
+  return control;
+}
+
+void Bounce::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto clusterCount = static_cast<uint32_t>(context.count("clusters"));
+  const auto faceCount = static_cast<uint32_t>(context.count("faces"));
+  const gpu::Buffer& control = context.buffer("control");
+  const gpu::Buffer& status = context.buffer("status");
+  const gpu::Buffer& indirect = context.buffer("indirect");
+  const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
+  const gpu::Buffer& direct = context.buffer("direct_radiosity");
+  if (clusterCount == 0) {
+    commands.fill(status, 0);
+    return;
+  }
+  const bool hasMatrix = context.has("entries");
+  const bool hasEmission = context.has("emission");
+  const uint32_t bounces = context.request().bounces;
+  const bool counted = bounces != scene::kAllBounces;
+  BouncePush push{};
+  push.matrix = glm::uvec2(0);
+  if (hasMatrix) {
+    // An import is one buffer; transfer grows its own.
+    const std::vector<const gpu::Buffer*> grown = context.grown("entries");
+    const VkDeviceAddress address = (grown.empty() ? context.buffer("entries") : *grown.front()).address();
+    push.matrix = glm::uvec2(static_cast<uint32_t>(address), static_cast<uint32_t>(address >> 32));
+  }
+  push.clusterCount = clusterCount;
+  push.faceCount = faceCount;
+  push.iterationLimit = iterations_;
+  push.tolerance = residual_;
+  push.startBelow = counted ? 0u : 1u;
+  push.hasEmission = hasEmission ? 1u : 0u;
+
+  const BounceControl initial = makeControl(clusterCount, counted);
+  commands.update(control, &initial, sizeof(initial));
+  commands.fill(indirect, 0);
+  if (!hasMatrix) {
+    commands.copy(direct, radiosity, static_cast<VkDeviceSize>(clusterCount) * 12);
+    commands.barrier();
+  } else {
+    commands.barrier();
+    if (hasEmission) recordEmission(context, push);
+    recordSweeps(context, push, counted ? bounces - 1 : iterations_);
+    commands.bind(finishClusters_, {context.buffer("clusters"), context.buffer("source"), indirect, radiosity});
+    commands.push(push);
+    commands.dispatchItems(clusterCount, kGroup);
+  }
+  commands.bind(finishFaces_, {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"),
+                               hasEmission ? context.buffer("received") : indirect, indirect, context.buffer("face_radiosity")});
+  commands.push(push);
+  commands.dispatchItems(faceCount, kGroup);
+  commands.copy(control, status, kStatusBytes, offsetof(BounceControl, iterations));
+}
+
+void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& push) const {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& mean = context.buffer("mean_emission");
+  commands.bind(meanEmission_,
+                {context.buffer("clusters"), context.buffer("members"), context.buffer("faces"), context.buffer("emission"), mean});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kGroup);
+  commands.barrier();
+  commands.bind(receiveEmission_, {context.buffer("row_start"), mean, context.buffer("received")});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kRowsPerGroup);
+  commands.barrier();
+}
+
+void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push, uint32_t count) const {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& control = context.buffer("control");
+  const gpu::Buffer& source = context.buffer("source");
+  const gpu::Buffer& iterate = context.buffer("iterate");
+  const gpu::Buffer& steps = context.buffer("steps");
+  commands.bind(source_, {context.buffer("clusters"), context.buffer("direct_radiosity"),
+                          push.hasEmission != 0 ? context.buffer("received") : source, context.buffer("sky"), source, control});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kGroup);
+  commands.barrier();
+  commands.bind(begin_, {source, control, iterate, steps});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kGroup);
+  commands.barrier();
+  commands.bind(sweep_,
+                {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps, context.buffer("indirect"), control});
+  commands.push(push);
+  for (uint32_t i = 0; i < count; ++i) {
+    commands.dispatchIndirect(control, offsetof(BounceControl, groups));
+    commands.barrier();
+  }
+}
+
+void Bounce::frameDone(graph::RecordContext& context) {
+  uint32_t words[4];
+  std::memcpy(words, context.buffer("status").mapped(), sizeof(words));
+  context.reportStat("iterations", words[0]);
+  context.reportStat("residual", static_cast<double>(std::bit_cast<float>(words[1])));
+  context.reportStat("fallback", words[2]);
+  context.reportStat("stop_reason", words[3]);
+}
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,50 @@
+// clustered_voxel.bounce — light that surfaces pass on among themselves.
+//
+// reads   row_start, entries, sky of transfer (not needed for one bounce without emitters by rays); clusters, members, labels, faces;
+//         face_irradiance and direct_radiosity of inject; emission where emitters light through rays (Traits::emittersByRays)
+// writes  cluster_radiosity  vec3 × C  reflected B, W/m², without emission; 0: black or unlit
+//         face_radiosity     vec3 × F  likewise: ρ_s (E_dir,s + E_emit,c + E_ind,c), direct light at the detail of faces
+//         status             u32 × 4   (read back) iterations; residual as float bits; 1: fell back to plain steps; why it ended
+// runs    when the light, the matrix or the clusters change
+// cost    an iteration is a pass over the matrix (8 B an entry); recorded `iterations` times, those after the end dispatch nothing
+// source  METHODS section 1, Bounce: B = B⁰ + ρFB per colour channel, B⁰ = Σ a ρ E_dir / Σ a; beyond the paper, which stops at one bounce
+//
+// request.bounces = n: n − 1 plain steps, so that eyes see n bounces. kAllBounces: until |B⁰ + ρFB − B| ≤ residual · max B⁰ or, where that
+// is out of float's reach (ρ near 1), 2⁻²² max B; the error is at most the residual / (1 − r), r the spectral radius of ρF. The solver
+// starts below every solution, at −max B⁰: then its first residual is positive, eight plain steps keep it so, and the greatest ratio of two
+// successive residuals bounds r from above (Collatz, Wielandt), much closer than max ρ does. Chebyshev iteration for eigenvalues in [−r, r]
+// takes it from there, in about ln(1/residual) / √(2(1 − r)) steps; if its residual does not fall over 16 steps, plain steps follow, which
+// contract in every case since rows of F sum to at most 1 and ρ < 1.
+#pragma once
+
+#include "engine/graph/node.h"
+#include "shaders/clustered_voxel/bounce/bounce_types.h"
+
+namespace radivox::clustered_voxel {
+
+class Bounce : public graph::Node {
+ public:
+  static constexpr std::string_view kType = "clustered_voxel.bounce";
+  enum class Solver : uint32_t { Chebyshev, Plain };
+
+  Bounce();
+  std::string_view type() const override { return kType; }
+  params::Table& params() override { return table_; }
+  void declare(graph::Declaration& d) override;
+  void prepare(graph::PrepareContext& context) override;
+  void record(graph::RecordContext& context) override;
+  void frameDone(graph::RecordContext& context) override;
+
+ private:
+  void recordEmission(graph::RecordContext& context, const shared::BouncePush& push) const;
+  void recordSweeps(graph::RecordContext& context, const shared::BouncePush& push, uint32_t count) const;
+  shared::BounceControl makeControl(uint32_t clusterCount, bool counted) const;
+
+  Solver solver_ = Solver::Chebyshev;
+  float residual_ = 1e-6f;
+  uint32_t iterations_ = 1000;
+  params::Table table_;
+  gpu::Pipeline meanEmission_, receiveEmission_, source_, begin_, sweep_, finishClusters_, finishFaces_;
+};
+
+}  // namespace radivox::clustered_voxel

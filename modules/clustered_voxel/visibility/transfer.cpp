@@ -1,0 +1,89 @@
+#include "modules/clustered_voxel/visibility/transfer.h"
+
+#include <cassert>
+
+#include "shaders/shared/voxel.h"
+
+namespace radivox::clustered_voxel {
+
+using graph::Extent;
+using graph::Shape;
+
+namespace {
+
+struct Push {
+  uint32_t clusterCount;
+  uint32_t faceCount;
+  VkDeviceAddress matrix;
+};
+
+}  // namespace
+
+void Transfer::declare(graph::Declaration& d) {
+  d.read("visibility_row_start", "first entry of each face's row in its chunk");
+  d.read("visibility_entries", "rows of the faces, by chunk");
+  d.read("chunk_table", "device address of each chunk");
+  d.read("faces", "Face");
+  d.read("labels", "cluster id of each face");
+  d.read("clusters", "Cluster");
+  d.read("members", "face ids by cluster");
+  d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
+  d.write("entries", Shape::buffer(8, Extent::of("transfer_entries")), "column, form factor as float bits; columns ascend").growable = true;
+  d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene");
+  d.publishCount("transfer_entries", "", 0);
+  d.scratch("total", Shape::buffer(4, 2), "number of entries, low and high word");
+  // Covers Scan::scratchBytes: two words a block of 1024 items, the same for their sums, each level at an aligned offset.
+  d.scratch("scan", Shape::buffer(4, Extent::of("clusters") / 256 + 512), "scan");
+  d.hostPaced();
+}
+
+void Transfer::prepare(graph::PrepareContext& context) {
+  gpu::Device& device = context.device();
+  constexpr auto kB = gpu::BindingType::StorageBuffer;
+  scan_ = std::make_unique<gpu::Scan>(device);
+  count_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_count.comp",
+                                                          .bindings = {kB, kB, kB, kB, kB, kB},
+                                                          .pushConstantBytes = sizeof(Push)});
+  fill_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
+                                                         .bindings = {kB, kB, kB, kB, kB, kB, kB, kB},
+                                                         .pushConstantBytes = sizeof(Push)});
+}
+
+void Transfer::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto clusterCount = static_cast<uint32_t>(context.count("clusters"));
+  const gpu::Buffer& rowStart = context.buffer("row_start");
+  Push push{clusterCount, static_cast<uint32_t>(context.count("faces")), 0};
+  const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
+  if (context.step() == 0) {
+    assert(b("scan").bytes() >= gpu::Scan::scratchBytes(clusterCount + 1));
+    commands.fill(rowStart, 0);
+    commands.barrier();
+    commands.bind(count_, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart});
+    commands.push(push);
+    commands.dispatchItems(clusterCount, 1);  // a group a cluster
+    scan_->scan(commands, rowStart, rowStart, clusterCount + 1, b("scan"), &b("total"));
+  } else if (clusterCount > 0) {
+    push.matrix = context.grown("entries").front()->address();
+    commands.bind(fill_,
+                  {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart, b("faces"), b("sky")});
+    commands.push(push);
+    commands.dispatchItems(clusterCount, 1);
+  }
+}
+
+void Transfer::stepDone(graph::RecordContext& context) {
+  if (context.step() != 0) return;
+  uint32_t total[2];
+  const std::vector<std::byte> words = context.readBuffer("total", 0, sizeof(total));
+  std::memcpy(total, words.data(), sizeof(total));
+  if (total[1] != 0)
+    throw Error(
+        ErrorCode::OutOfMemory,
+        "clustered_voxel.transfer: the cluster matrix has more than 2^32 entries; raise cluster.spacing or lower voxelize.resolution");
+  context.clearGrown("entries");
+  context.grow("entries", static_cast<uint64_t>(total[0]) * 8);
+  context.setCount("transfer_entries", total[0]);
+}
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,39 @@
+// clustered_voxel.transfer — form factors between clusters, a sparse matrix.
+//
+// reads   visibility_row_start, visibility_entries, chunk_table (rows of the faces); faces, labels, clusters, members
+// writes  row_start  u32 × (C + 1)  first entry of each row
+//         entries+   uvec2          column, F_cc' as float bits; columns ascend within a row; publishes [transfer_entries]
+//         sky        f32 × C        share of the cluster's rays that left the scene
+// runs    when visibility or clusters change; host-paced in two steps, since the number of entries must be known to store them
+// cost    four passes over the visibility entries; C · C / 32 words of shared memory traffic; 8 B an entry
+// source  METHODS section 1, Bounce: F_cc' = Σ_{s∈c} a_s m_s,c' / (M A_c). Near hits count for their face's cluster.
+//
+// Sums are integers (areas to 31 bits of the cluster's largest face), so any order gives the same bits, and Σ_c' F_cc' + sky = 1 but
+// for the rounding of each entry to float. Faces are taken to have the same number of rays; if not, they weigh by a_s M_s.
+#pragma once
+
+#include <memory>
+
+#include "engine/gpu/scan.h"
+#include "engine/graph/node.h"
+
+namespace radivox::clustered_voxel {
+
+class Transfer : public graph::Node {
+ public:
+  static constexpr std::string_view kType = "clustered_voxel.transfer";
+  std::string_view type() const override { return kType; }
+  params::Table& params() override { return table_; }
+  void declare(graph::Declaration& d) override;
+  void prepare(graph::PrepareContext& context) override;
+  uint32_t stepCount(graph::RecordContext&) override { return 2; }
+  void record(graph::RecordContext& context) override;
+  void stepDone(graph::RecordContext& context) override;
+
+ private:
+  params::Table table_;
+  std::unique_ptr<gpu::Scan> scan_;
+  gpu::Pipeline count_, fill_;
+};
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// B_e of each cluster: Σ a B_e / Σ a over its faces, in order.
+#include "clustered_voxel/bounce/bounce_types.h"
+#include "clustered_voxel/compensated.glsl"
+#include "shared/dispatch.glsl"
+#include "shared/voxel.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { BouncePush push; };
+layout(set = 0, binding = 0, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer Members { uint members[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Faces { Face faces[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer Emission { vec3 emission[]; };
+layout(set = 0, binding = 4, scalar) writeonly buffer Mean { vec3 meanEmission[]; };
+
+void main() {
+  uint c = radivoxItemIndex();
+  if (c >= push.clusterCount) return;
+  Cluster cluster = clusters[c];
+  CompensatedSum3 sum = CompensatedSum3(vec3(0.0), vec3(0.0));
+  for (uint i = 0; i < cluster.faceCount; ++i) {
+    uint s = members[cluster.firstMember + i];
+    addTo(sum, faces[s].area * emission[s]);
+  }
+  meanEmission[c] = (sum.high + sum.low) / cluster.area;
+}

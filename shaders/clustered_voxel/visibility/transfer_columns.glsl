@@ -1,0 +1,54 @@
+// One group a cluster: which clusters its faces' rows name. Columns are looked at in windows of 65536, each a bit set in shared memory,
+// so that they come out ascending and without a table; scenes of more clusters read their rows again for every window.
+#ifndef RADIVOX_TRANSFER_COLUMNS_GLSL
+#define RADIVOX_TRANSFER_COLUMNS_GLSL
+#include "shared/dispatch.glsl"
+#include "shared/visibility_rows.glsl"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push {
+  uint clusterCount;
+  uint faceCount;
+  uvec2 matrix;  // device address of the entries (fill only)
+} push;
+layout(set = 0, binding = 0, scalar) readonly buffer RowStart { uint rowStart[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer ChunkTable { uvec2 chunkTable[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Labels { uint labels[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer Members { uint members[]; };
+
+const uint kLanes = 64u;
+const uint kWindow = 65536u;
+const uint kWords = kWindow / 32u;
+shared uint columnBits[kWords];
+
+// Column of an entry: the cluster, or that of the near face. kMissBase for rays that left the scene.
+uint columnOf(uint entry) {
+  uint id = entry & kEntryIdMask;
+  if (id < push.clusterCount) return id;
+  return id < push.clusterCount + push.faceCount ? labels[id - push.clusterCount] : kMissBase;
+}
+uint countOf(uint entry) { return (entry >> 24) + 1u; }
+
+uint windowWords(uint window) { return min(kWords, (push.clusterCount - window + 31u) / 32u); }
+
+// All lanes; ends with a barrier.
+void findColumns(Cluster cluster, uint window) {
+  uint lane = gl_LocalInvocationID.x;
+  uint words = windowWords(window);
+  for (uint i = lane; i < words; i += kLanes) columnBits[i] = 0u;
+  barrier();
+  for (uint i = lane; i < cluster.faceCount; i += kLanes) {
+    uint s = members[cluster.firstMember + i];
+    uint slot = rowSlot(s);
+    uint end = rowStart[slot + 1u];
+    Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
+    for (uint e = rowStart[slot]; e < end; ++e) {
+      uint column = columnOf(entries.words[e]) - window;  // wraps for columns before the window
+      if (column < kWindow && column + window < push.clusterCount) atomicOr(columnBits[column >> 5], 1u << (column & 31u));
+    }
+  }
+  barrier();
+}
+
+#endif

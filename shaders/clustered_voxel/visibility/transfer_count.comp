@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// Distinct columns of each row of the cluster matrix.
+#include "clustered_voxel/visibility/transfer_columns.glsl"
+layout(set = 0, binding = 5, scalar) writeonly buffer Counts { uint counts[]; };  // C + 1, scanned to row starts
+
+shared uint columnCount;
+
+void main() {
+  uint c = radivoxGroupIndex();
+  if (c >= push.clusterCount) return;  // the whole group
+  uint lane = gl_LocalInvocationID.x;
+  if (lane == 0u) columnCount = 0u;
+  Cluster cluster = clusters[c];
+  for (uint window = 0u; window < push.clusterCount; window += kWindow) {
+    findColumns(cluster, window);
+    uint words = windowWords(window);
+    uint found = 0u;
+    for (uint i = lane; i < words; i += kLanes) found += uint(bitCount(columnBits[i]));
+    if (found > 0u) atomicAdd(columnCount, found);
+    barrier();
+  }
+  if (lane == 0u) counts[c] = columnCount;
+}
