@@ -64,6 +64,7 @@ class Graph {
   std::vector<Edge> edges_;
   std::vector<Endpoint> outputs_;
   std::map<std::string, std::string> aovs_;
+  std::string help_;  ///< of the file
 };
 
 }  // namespace radivox::graph
