@@ -16,9 +16,8 @@ void declareStructure(graph::Declaration& d) {
 }
 
 void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline, std::initializer_list<gpu::BoundResource> rest) {
-  constexpr size_t kStructure = 6;
   constexpr size_t kMost = 24;
-  assert(kStructure + rest.size() <= kMost);
+  assert(6 + rest.size() <= kMost);
   const gpu::Buffer& grid = context.buffer("grid");
   // A fixed array: recording allocates nothing.
   std::array<gpu::BoundResource, kMost> all = {grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid,
