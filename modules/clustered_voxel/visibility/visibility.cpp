@@ -1,0 +1,250 @@
+#include "modules/clustered_voxel/visibility/visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "modules/clustered_voxel/visibility/directions.h"
+#include "shaders/clustered_voxel/visibility/visibility.h"
+#include "shaders/shared/clearance.h"
+
+namespace radivox::clustered_voxel {
+namespace {
+
+using gpu::BindingType;
+using graph::Extent;
+using graph::Shape;
+using shared::kRowsPerChunk;
+
+uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
+
+uint64_t clearanceBytes(const shared::Grid& grid) {
+  return uint64_t{shared::clearanceRowBytes(grid.size)} * (grid.size.y + 2) * (grid.size.z + 2);
+}
+
+}  // namespace
+
+Visibility::Visibility()
+    : table_(
+          {params::number("rays", &rays_, {1, shared::kMaxRays}, "rays per voxel face", params::Invalidates::Plan),
+           params::choice("traversal", &traversal_, {"dda", "bresenham"},
+                          "dda: every voxel a ray touches; bresenham: the paper's 26-connected line, which stops at any voxel",
+                          params::Invalidates::Plan),
+           params::choice("frame", &frame_, {"normal", "axis"},
+                          "normal: the hemisphere about the face's surface; axis: the paper's, about the face's axis from the voxel's side",
+                          params::Invalidates::Plan),
+           params::choice("hit", &hit_, {"plane", "voxel"},
+                          "plane: a ray stops where it crosses the mean plane of a voxel's surface; voxel: at any voxel with faces",
+                          params::Invalidates::Plan),
+           params::choice("skip", &skip_, {"clearance", "bricks", "none"},
+                          "how rays pass empty space (same result): a byte a voxel, a byte a brick, or voxel by voxel",
+                          params::Invalidates::Plan),
+           params::number("near", &near_, {0.0, 4096.0}, "hits up to this distance keep their face instead of its cluster, voxels",
+                          params::Invalidates::Rerun)}) {}
+
+void Visibility::declare(graph::Declaration& d) {
+  d.read("grid", "Grid");
+  d.read("occupancy", "two words a brick");
+  d.read("rank", "occupied voxels before the brick");
+  d.read("voxels", "packed coordinate of each voxel");
+  d.read("distance", "bricks to the nearest occupied brick, a byte a brick");
+  d.read("mask", "faces of each voxel");
+  d.read("first", "first face of each voxel");
+  d.read("faces", "Face");
+  d.read("labels", "cluster of each face");
+  const Extent faces = Extent::of("faces");
+  d.write("row_start", Shape::buffer(4, faces * (kRowsPerChunk + 1) / kRowsPerChunk + (kRowsPerChunk + 1)),
+          "first entry of each row within its chunk");
+  d.write("chunk_table", Shape::buffer(8, faces / kRowsPerChunk + 1), "device address of each chunk of entries");
+  d.write("entries", {}, "id | (count − 1) << 24, a row after the other").growable = true;
+  d.write("clearance", {}, "u8 per voxel and rim: half-size of the empty cube around it").growable = true;
+  d.write("clearance_work", {}, "between two passes; freed at once").growable = true;
+  d.publishCount("entries", "", 0);
+  d.hostPaced();
+  const uint64_t rows = kRowsPerChunk;
+  d.scratch("order", Shape::buffer(4, rows), "rows as lanes take them");
+  d.scratch("hits", Shape::buffer(4, rows * rays_), "what each ray of the chunk hit");
+  d.scratch("table", Shape::buffer(4, rows << tableBits(rays_)), "hash table a row");
+  d.scratch("offsets", Shape::buffer(4, rows + 1), "distinct ids a row, then their exclusive sums");
+  d.scratch("total", Shape::buffer(4, 2), "entries of the chunk");
+  d.scratch("scan", Shape::buffer(1, gpu::Scan::scratchBytes(rows + 1)), "scan");
+}
+
+void Visibility::prepare(graph::PrepareContext& context) {
+  gpu::Device& device = context.device();
+  constexpr auto kB = BindingType::StorageBuffer;
+  maxRange_ = device.capabilities().maxStorageBufferRange;
+  scan_ = std::make_unique<gpu::Scan>(device);
+  const auto make = [&](std::string_view shader, size_t bindings, uint32_t pushBytes, std::vector<gpu::SpecializationConstant> constants) {
+    return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
+                                                          .bindings = std::vector<BindingType>(bindings, kB),
+                                                          .pushConstantBytes = pushBytes,
+                                                          .constants = std::move(constants)});
+  };
+  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 2, 8, {});
+  merge_ = make("clustered_voxel/visibility/merge.comp", 4, 16, {});
+  fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
+  const auto frame = static_cast<uint32_t>(frame_);
+  if (traversal_ == Traversal::Bresenham) {
+    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", 12, 16, {{2, frame}});
+  } else {
+    const auto hit = static_cast<uint32_t>(hit_);
+    if (skip_ == Skip::Clearance) {
+      clearanceRows_ = make("clustered_voxel/visibility/clearance_rows.comp", 5, 0, {});
+      clearancePlanes_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 1}});
+      clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
+    }
+    // Where the clearance of a large grid does not fit one binding, bricks do.
+    trace_ = make("clustered_voxel/visibility/trace.comp", 12, 16, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}});
+    if (skip_ == Skip::Clearance) traceBricks_ = make("clustered_voxel/visibility/trace.comp", 12, 16, {{0, 1}, {1, hit}, {2, frame}});
+  }
+  const std::vector<glm::vec3> directions = makeDirections(rays_);
+  directions_ = gpu::Buffer(device, "visibility directions", directions.size() * sizeof(glm::vec3));
+  gpu::upload(device, directions_, directions);
+}
+
+uint32_t Visibility::chunkCount(graph::RecordContext& context) const {
+  return static_cast<uint32_t>((context.count("faces") + kRowsPerChunk - 1) / kRowsPerChunk);
+}
+
+uint32_t Visibility::rowCount(graph::RecordContext& context, uint32_t chunk) const {
+  return static_cast<uint32_t>(std::min<uint64_t>(kRowsPerChunk, context.count("faces") - uint64_t{chunk} * kRowsPerChunk));
+}
+
+// Step 0 learns the grid; step 1 + k fills chunk k − 1 and traces chunk k.
+uint32_t Visibility::stepCount(graph::RecordContext& context) {
+  const uint32_t chunks = chunkCount(context);
+  return chunks == 0 ? 1 : chunks + 2;
+}
+
+void Visibility::record(graph::RecordContext& context) {
+  const uint32_t step = context.step();
+  if (step == 0) {
+    context.commands().fill(context.buffer("row_start"), 0);
+    context.commands().fill(context.buffer("chunk_table"), 0);
+    return;
+  }
+  context.commands().barrier();
+  if (step == 1 && usesClearance()) recordClearance(context);
+  if (step > 1) recordFill(context, step - 2);
+  if (step <= chunkCount(context)) recordTrace(context, step - 1);
+}
+
+void Visibility::stepDone(graph::RecordContext& context) {
+  const uint32_t step = context.step();
+  const uint32_t chunks = chunkCount(context);
+  if (step == 0) begin(context);
+  if (step == 1 && usesClearance()) context.clearGrown("clearance_work");
+  if (step >= 1 && step <= chunks) {
+    uint32_t total[2];
+    const std::vector<std::byte> raw = context.readBuffer("total", 0, sizeof(total));
+    std::memcpy(total, raw.data(), sizeof(total));
+    context.grow("entries", uint64_t{total[0]} * 4);
+    entryCount_ += total[0];
+    context.reportProgress(static_cast<double>(step) / chunks);
+  }
+  if (step < chunks || (chunks > 0 && step == chunks)) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double faces = static_cast<double>(context.count("faces"));
+  context.setCount("entries", entryCount_);
+  context.reportStat("rays", faces * rays_);
+  context.reportStat("mrays_per_second", seconds > 0 ? faces * rays_ / seconds * 1e-6 : 0);
+  context.reportStat("entries", static_cast<double>(entryCount_));
+  context.reportStat("mean_row", faces > 0 ? static_cast<double>(entryCount_) / faces : 0);
+  context.reportStat("clearance_bytes", usesClearance() && faces > 0 ? static_cast<double>(clearanceBytes(grid_)) : 0);
+}
+
+void Visibility::begin(graph::RecordContext& context) {
+  const std::vector<std::byte> raw = context.readBuffer("grid", 0, sizeof(grid_));
+  std::memcpy(&grid_, raw.data(), sizeof(grid_));
+  const uint64_t ids = context.count("faces") + context.count("clusters");
+  if (ids >= shared::kMissBase) {
+    // Faces grow with N² and clusters hardly.
+    const uint32_t resolution = std::max({grid_.size.x, grid_.size.y, grid_.size.z});
+    const double fits = std::sqrt(static_cast<double>(shared::kMissBase) / static_cast<double>(ids)) * 0.98 * resolution;
+    throw Error(ErrorCode::OutOfMemory, "visibility: " + std::to_string(ids) + " faces and clusters at resolution " +
+                                            std::to_string(resolution) + " do not fit the 24 bits of an entry; use voxelize.resolution=" +
+                                            std::to_string(static_cast<uint32_t>(fits)) + " or less");
+  }
+  context.clearGrown("entries");
+  context.clearGrown("clearance");
+  entryCount_ = 0;
+  start_ = std::chrono::steady_clock::now();
+  clearanceTooLarge_ = maxRange_ != 0 && clearanceBytes(grid_) > maxRange_;
+  if (!usesClearance() || chunkCount(context) == 0) return;
+  context.grow("clearance", clearanceBytes(grid_));
+  context.grow("clearance_work", clearanceBytes(grid_));
+}
+
+void Visibility::recordClearance(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& result = *context.grown("clearance").at(0);
+  const gpu::Buffer& work = *context.grown("clearance_work").at(0);
+  const uint64_t words = clearanceBytes(grid_) / 4;
+  commands.bind(clearanceRows_,
+                {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"), result});
+  commands.dispatchItems(uint64_t{grid_.size.y + 2} * (grid_.size.z + 2), 64);
+  commands.barrier();
+  commands.bind(clearancePlanes_, {result, work, context.buffer("grid")});
+  commands.dispatchItems(words, 64);
+  commands.barrier();
+  commands.bind(clearanceSpace_, {work, result, context.buffer("grid")});
+  commands.dispatchItems(words, 64);
+  commands.barrier();
+}
+
+void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
+  gpu::Commands& commands = context.commands();
+  const uint32_t firstFace = chunk * kRowsPerChunk;
+  const uint32_t rows = rowCount(context, chunk);
+  const gpu::Buffer& order = context.buffer("order");
+  const gpu::Buffer& hits = context.buffer("hits");
+  const gpu::Buffer& table = context.buffer("table");
+  const gpu::Buffer& offsets = context.buffer("offsets");
+  struct {
+    uint32_t firstFace, rowCount;
+  } sortPush{firstFace, rows};
+  commands.bind(sortRows_, {context.buffer("faces"), order});
+  commands.push(sortPush);
+  commands.dispatch(1);
+  commands.fill(table, shared::kEmptySlot);
+  commands.barrier();
+  struct {
+    uint32_t firstFace, rowCount, rayCount;
+    float nearDistance;
+  } tracePush{firstFace, rows, rays_, near_};
+  // An absent clearance is never read.
+  const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
+  const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
+  commands.bind(bricks ? traceBricks_ : trace_, {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"),
+                                                 context.buffer("voxels"), context.buffer("distance"), context.buffer("mask"),
+                                                 context.buffer("first"), context.buffer("faces"), clearance, directions_, order, hits});
+  commands.push(tracePush);
+  const uint32_t lanes = (rows + 63) / 64 * 64;
+  commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);
+  commands.barrier();
+  struct {
+    uint32_t rowCount, rayCount, tableBits, clusterCount;
+  } mergePush{rows, rays_, tableBits(rays_), static_cast<uint32_t>(context.count("clusters"))};
+  commands.bind(merge_, {hits, context.buffer("labels"), table, offsets});
+  commands.push(mergePush);
+  commands.dispatchItems(kRowsPerChunk + 1, 64);
+  commands.barrier();
+  scan_->scan(commands, offsets, offsets, kRowsPerChunk + 1, context.buffer("scan"), &context.buffer("total"));
+}
+
+void Visibility::recordFill(graph::RecordContext& context, uint32_t chunk) {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& entries = *context.grown("entries").at(chunk);
+  const VkDeviceAddress address = entries.address();
+  commands.update(context.buffer("chunk_table"), &address, sizeof(address), uint64_t{chunk} * sizeof(address));
+  struct {
+    uint32_t rowCount, tableBits, firstRowStart;
+  } push{rowCount(context, chunk), tableBits(rays_), chunk * (kRowsPerChunk + 1)};
+  commands.bind(fill_, {context.buffer("table"), context.buffer("offsets"), entries, context.buffer("row_start")});
+  commands.push(push);
+  commands.dispatchItems(kRowsPerChunk + 1, 64);
+  commands.barrier();
+}
+
+}  // namespace radivox::clustered_voxel

@@ -1,0 +1,75 @@
+// clustered_voxel.visibility — what each voxel face sees: form factors by counting rays.
+//
+// reads   grid; occupancy, distance (per brick); rank; voxels, mask, first (per voxel); faces; labels (cluster of each face)
+// writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first entry of each row within its chunk
+//         entries+ u32                                rows, a buffer a chunk: shared/voxel.h; the counts of a row sum to M
+//         chunk_table uvec2 × chunks                  device address of each chunk
+//         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
+//         [entries]
+// runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
+// cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
+//         of scratch; 4 bytes an entry; one byte a voxel of the grid (twice while it is made)
+// source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
+//
+// Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. Rays start at x_s (within their voxel
+// lifted by 0.05 h); which face stops a ray is told, with what was measured, in shaders/shared/voxel_cast.glsl. A hit nearer than
+// `near` keeps its face's id, a farther one becomes its cluster's. Misses count by direction bin, backs of one-sided surfaces as
+// kAbsorbed, so that rows always sum to M.
+//
+// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction and rotation (sort_rows.comp): that,
+// and the clearance bytes, are what makes it fast. Rows do not depend on either.
+#pragma once
+
+#include <chrono>
+#include <memory>
+
+#include "engine/gpu/scan.h"
+#include "engine/graph/node.h"
+#include "shaders/shared/voxel.h"
+
+namespace radivox::clustered_voxel {
+
+class Visibility : public graph::Node {
+ public:
+  static constexpr std::string_view kType = "clustered_voxel.visibility";
+  enum class Traversal : uint32_t { Dda, Bresenham };
+  enum class Frame : uint32_t { Normal, Axis };
+  enum class Hit : uint32_t { Plane, Voxel };
+  enum class Skip : uint32_t { Clearance, Bricks, None };
+  Visibility();
+  std::string_view type() const override { return kType; }
+  params::Table& params() override { return table_; }
+  void declare(graph::Declaration& d) override;
+  void prepare(graph::PrepareContext& context) override;
+  uint32_t stepCount(graph::RecordContext& context) override;
+  void record(graph::RecordContext& context) override;
+  void stepDone(graph::RecordContext& context) override;
+
+ private:
+  uint32_t chunkCount(graph::RecordContext& context) const;
+  uint32_t rowCount(graph::RecordContext& context, uint32_t chunk) const;
+  bool usesClearance() const { return traversal_ == Traversal::Dda && skip_ == Skip::Clearance && !clearanceTooLarge_; }
+  void begin(graph::RecordContext& context);
+  void recordClearance(graph::RecordContext& context);
+  void recordTrace(graph::RecordContext& context, uint32_t chunk);
+  void recordFill(graph::RecordContext& context, uint32_t chunk);
+
+  uint32_t rays_ = 128;
+  Traversal traversal_ = Traversal::Dda;
+  Frame frame_ = Frame::Normal;
+  Hit hit_ = Hit::Plane;
+  Skip skip_ = Skip::Clearance;
+  float near_ = 8.f;
+  params::Table table_;
+
+  gpu::Pipeline clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, trace_, traceBricks_, merge_, fill_;
+  gpu::Buffer directions_;
+  std::unique_ptr<gpu::Scan> scan_;
+  shared::Grid grid_{};
+  VkDeviceSize maxRange_ = 0;
+  bool clearanceTooLarge_ = false;
+  uint64_t entryCount_ = 0;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace radivox::clustered_voxel

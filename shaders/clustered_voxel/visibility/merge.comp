@@ -1,0 +1,47 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// Counts what the rays of each row of a chunk hit: ids into a hash table of the row's own, in ray order, so that its contents
+// depend on nothing else. A slot is an entry of shared/voxel.h, or kEmptySlot.
+layout(local_size_x = 64) in;
+#include "clustered_voxel/visibility/visibility.h"
+layout(set = 0, binding = 0, scalar) readonly buffer Hits { uint hits[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer Labels { uint labels[]; };
+layout(set = 0, binding = 2, scalar) buffer Table { uint table[]; };             // 2^tableBits a row, all empty
+layout(set = 0, binding = 3, scalar) writeonly buffer Counts { uint counts[]; };  // distinct ids a row; kRowsPerChunk + 1 words, 0 past the rows
+layout(push_constant, scalar) uniform Push {
+  uint rowCount;
+  uint rayCount;
+  uint tableBits;
+  uint clusterCount;
+};
+#include "shared/dispatch.glsl"
+
+uint idOf(uint hit) {
+  if ((hit & kNearHit) != 0u) return clusterCount + (hit & ~kNearHit);
+  return hit >= kMissHit ? kMissBase + (hit - kMissHit) : labels[hit];
+}
+
+void main() {
+  uint row = radivoxItemIndex();
+  if (row > kRowsPerChunk) return;
+  if (row >= rowCount) {
+    counts[row] = 0u;
+    return;
+  }
+  uint base = row << tableBits;
+  uint mask = (1u << tableBits) - 1u;
+  uint distinct = 0u;
+  for (uint ray = 0u; ray < rayCount; ++ray) {
+    uint id = idOf(hits[row * rayCount + ray]);
+    uint slot = (id * 2654435769u) >> (32u - tableBits);
+    uint entry = table[base + slot];
+    while (entry != kEmptySlot && (entry & kEntryIdMask) != id) {
+      slot = (slot + 1u) & mask;
+      entry = table[base + slot];
+    }
+    distinct += entry == kEmptySlot ? 1u : 0u;
+    table[base + slot] = entry == kEmptySlot ? id : entry + 0x01000000u;
+  }
+  counts[row] = distinct;
+}

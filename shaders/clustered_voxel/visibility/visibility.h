@@ -1,0 +1,56 @@
+// What the shaders of clustered_voxel.visibility and their host side agree on.
+#ifndef RADIVOX_CLUSTERED_VOXEL_VISIBILITY_H
+#define RADIVOX_CLUSTERED_VOXEL_VISIBILITY_H
+#include "../../shared/voxel_codec.h"
+RADIVOX_SHARED_BEGIN
+
+// Rotations of the direction set; a face takes one by its hash, so that neighbours do not share a pattern.
+RADIVOX_CONST uint kRotationCount = 16u;
+// Rays that one lane traces, one after the other.
+RADIVOX_CONST uint kRaysPerLane = 32u;
+
+// What a ray hit, as the trace leaves it for the merge: a face, with kNearHit if it keeps its id; or kMissHit + bin (6: absorbed).
+RADIVOX_CONST uint kNearHit = 0x80000000u;
+RADIVOX_CONST uint kMissHit = 0x7ffffff0u;
+RADIVOX_CONST uint kEmptySlot = 0xffffffffu;
+
+RADIVOX_FUNCTION uint hashBits(uint x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+RADIVOX_FUNCTION uint rotationOf(uint face) { return hashBits(face) % kRotationCount; }
+RADIVOX_FUNCTION uint rayRandom(uint face, uint ray) { return hashBits(face * kMaxRays + ray + 0x9e3779b9u); }
+
+// Direction bin of a miss: the dominant axis, numbered as faces are.
+RADIVOX_FUNCTION uint directionBin(vec3 d) {
+  vec3 a = abs(d);
+  uint axis = a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
+  return 2u * axis + (d[axis] < 0.0f ? 1u : 0u);
+}
+
+// Local direction (z along n) into the frame of n; the two other axes after Duff et al., "Building an Orthonormal Basis, Revisited" (2017).
+RADIVOX_FUNCTION vec3 alongNormal(vec3 local, vec3 n) {
+  float side = n.z >= 0.0f ? 1.0f : -1.0f;
+  RADIVOX_PRECISE float a = preciseReciprocal(1.0f + abs(n.z));
+  RADIVOX_PRECISE float b = n.x * n.y * a;
+  RADIVOX_PRECISE float tx = 1.0f - n.x * n.x * a;
+  RADIVOX_PRECISE float by = 1.0f - n.y * n.y * a;
+  RADIVOX_PRECISE float x = tx * local.x - side * b * local.y + n.x * local.z;
+  RADIVOX_PRECISE float y = -b * local.x + side * by * local.y + n.y * local.z;
+  RADIVOX_PRECISE float z = -side * n.x * local.x - n.y * local.y + n.z * local.z;
+  return vec3(x, y, z);
+}
+
+// Where the rays of a face start (frame=normal): x_s lifted a little, within its voxel.
+RADIVOX_FUNCTION vec3 liftedOrigin(vec3 position, vec3 n, uvec3 voxel) {
+  RADIVOX_PRECISE vec3 lifted = position + 0.05f * n;
+  vec3 low = vec3(voxel);
+  return min(max(lifted, low), low + 1.0f);
+}
+
+RADIVOX_SHARED_END
+#endif
