@@ -42,7 +42,48 @@ void checkRange(const gpu::Device& device, const Scene& scene, const char* name,
 /// Textures share buffers of about this size, so that hundreds of them are a few allocations.
 constexpr uint64_t kTexelBufferBytes = 64ull << 20;
 
+void countGeometry(const Scene& scene, graph::Counts& counts) {
+  counts["triangles"] = scene.triangleCount();
+  counts["vertices"] = scene.vertices.size();
+  counts["materials"] = scene.materials.size();
+  counts["textures"] = scene.textures.size();
+}
+
+void countLights(const LightSetup& setup, graph::Counts& counts) {
+  counts["lights"] = setup.lights.size();
+  counts["shadow_views"] = setup.views.size();
+  counts["shadow_resolution"] = setup.shadowResolution;
+  counts["shadow_layers"] = setup.shadowLayers;
+  counts["emitter_samples"] = setup.emitterSampleCount;
+  counts["emissive_triangles"] = setup.emissive.size();
+}
+
+std::vector<graph::Import> listImports() {
+  return {
+      {"scene.vertices", Shape::buffer(sizeof(shared::Vertex), Extent::of("vertices"))},
+      {"scene.indices", Shape::buffer(sizeof(uint32_t), Extent::of("triangles") * 3)},
+      {"scene.triangle_materials", Shape::buffer(sizeof(uint32_t), Extent::of("triangles"))},
+      {"scene.materials", Shape::buffer(sizeof(shared::Material), Extent::of("materials"))},
+      {"scene.textures", Shape::buffer(sizeof(shared::Texture), Extent::of("textures"))},
+      {"scene.info", Shape::buffer(sizeof(shared::SceneInfo), 1)},
+      {"scene.lights", Shape::buffer(sizeof(shared::Light), Extent::of("lights"))},
+      {"scene.shadow_views", Shape::buffer(sizeof(shared::ShadowView), Extent::of("shadow_views"))},
+      {"scene.emissive_triangles", Shape::buffer(sizeof(shared::EmissiveTriangle), Extent::of("emissive_triangles"))},
+      {"view.camera", Shape::buffer(sizeof(shared::Camera), 1)},
+  };
+}
+
 }  // namespace
+
+SceneShapes describeShapes(const Scene& scene, const LightOptions& options, uint32_t width, uint32_t height) {
+  SceneShapes shapes;
+  shapes.imports = listImports();
+  countGeometry(scene, shapes.counts);
+  countLights(setUpLights(scene, options), shapes.counts);
+  shapes.counts["width"] = width;
+  shapes.counts["height"] = height;
+  return shapes;
+}
 
 GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const LightOptions& options) : device_(device), options_(options) {
   options_.maxShadowSide = std::min(options_.maxShadowSide, device.capabilities().maxImageDimension2D);
@@ -54,10 +95,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const LightOptions& 
   triangleMaterials_ = makeBuffer(device, "scene.triangle_materials", scene.triangleMaterials);
   materials_ = makeBuffer(device, "scene.materials", scene.materials);
   uploadTextures(scene);
-  counts_["triangles"] = scene.triangleCount();
-  counts_["vertices"] = scene.vertices.size();
-  counts_["materials"] = scene.materials.size();
-  counts_["textures"] = scene.textures.size();
+  countGeometry(scene, counts_);
   setLights(scene);
   setCamera(scene.cameras.empty() ? CameraDescription{} : scene.cameras.front(), 1, 1);
 }
@@ -112,12 +150,7 @@ void GpuScene::setLights(const Scene& scene) {
   info.emissiveArea = static_cast<float>(traits.emissiveArea);
   info.emitterSampleCount = setup.emitterSampleCount;
   info_ = makeHostBuffer(device_, "scene.info", std::vector<shared::SceneInfo>{info});
-  counts_["lights"] = setup.lights.size();
-  counts_["shadow_views"] = setup.views.size();
-  counts_["shadow_resolution"] = setup.shadowResolution;
-  counts_["shadow_layers"] = setup.shadowLayers;
-  counts_["emitter_samples"] = setup.emitterSampleCount;
-  counts_["emissive_triangles"] = setup.emissive.size();
+  countLights(setup, counts_);
   notes_ = setup.notes;
   ++lightVersion_;
 }
@@ -146,20 +179,7 @@ void GpuScene::importInto(graph::Executor& executor) const {
   executor.importBuffer("view.camera", camera_, cameraVersion_);
 }
 
-std::vector<graph::Import> GpuScene::imports() const {
-  return {
-      {"scene.vertices", Shape::buffer(sizeof(shared::Vertex), Extent::of("vertices"))},
-      {"scene.indices", Shape::buffer(sizeof(uint32_t), Extent::of("triangles") * 3)},
-      {"scene.triangle_materials", Shape::buffer(sizeof(uint32_t), Extent::of("triangles"))},
-      {"scene.materials", Shape::buffer(sizeof(shared::Material), Extent::of("materials"))},
-      {"scene.textures", Shape::buffer(sizeof(shared::Texture), Extent::of("textures"))},
-      {"scene.info", Shape::buffer(sizeof(shared::SceneInfo), 1)},
-      {"scene.lights", Shape::buffer(sizeof(shared::Light), Extent::of("lights"))},
-      {"scene.shadow_views", Shape::buffer(sizeof(shared::ShadowView), Extent::of("shadow_views"))},
-      {"scene.emissive_triangles", Shape::buffer(sizeof(shared::EmissiveTriangle), Extent::of("emissive_triangles"))},
-      {"view.camera", Shape::buffer(sizeof(shared::Camera), 1)},
-  };
-}
+std::vector<graph::Import> GpuScene::imports() const { return listImports(); }
 
 graph::Counts GpuScene::counts() const { return counts_; }
 
