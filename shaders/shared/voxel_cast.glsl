@@ -61,10 +61,11 @@ uint castBrickDistance(uint brick) {
 #endif
 }
 
-// Moves on until the cursor is in a voxel that may have faces, or outside; not at all if it is already.
-void castMarch(TraversalRay ray, inout TraversalCursor cursor) {
+// Moves on until the cursor is in a voxel that may have faces, or outside; not at all if it is already. Returns whether it moved.
+bool castMarch(TraversalRay ray, inout TraversalCursor cursor) {
   // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
-  uint passes = grid.size.x + grid.size.y + grid.size.z + 4u;
+  uint all_ = grid.size.x + grid.size.y + grid.size.z + 4u;
+  uint passes = all_;
   if (RADIVOX_SKIP == kSkipClearance) {
 #ifdef RADIVOX_BIND_CLEARANCE
     for (float c = clearanceAt(cursor.voxel); c > 0.0 && passes > 0u; --passes) {
@@ -80,7 +81,7 @@ void castMarch(TraversalRay ray, inout TraversalCursor cursor) {
       uint brick = brickOf(voxel, grid.bricks);
       uint distance = RADIVOX_SKIP == kSkipBricks ? castBrickDistance(brick) : 0u;
       if (distance == 0u) {
-        if (hasBit(occupancy[brick], bitOf(voxel))) return;
+        if (hasBit(occupancy[brick], bitOf(voxel))) break;
       } else {
         low = vec3(4 * (ivec3(voxel >> 2) - int(distance) + 1));
         high = vec3(4 * (ivec3(voxel >> 2) + int(distance)));
@@ -88,6 +89,7 @@ void castMarch(TraversalRay ray, inout TraversalCursor cursor) {
       traversalLeave(ray, low, high, cursor);
     }
   }
+  return passes != all_;
 }
 
 float castDot(vec3 a, vec3 b) {

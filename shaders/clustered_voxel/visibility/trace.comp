@@ -74,7 +74,7 @@ void main() {
       atStart = crowded;
       if (kFrame == 0 && !crowded) traversalStep(way, cursor);
     }
-    if (!atStart) castMarch(way, cursor);
+    if (!atStart && castMarch(way, cursor)) inFront = 0u;
     uint hit = kHitNothing;
     bool outside = isOutside(cursor.voxel);
     if (!outside) hit = castFace(way, cursor, atStart ? excluded : 0u, inFront, rayRandom(s, ray));
