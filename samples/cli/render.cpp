@@ -97,6 +97,7 @@ int runRender(const Options& options) {
   const uint32_t frameCount = parseWhole("--frames", options.frames, 1, 10000);
   const bool wantsPng =
       std::any_of(options.outputs.begin(), options.outputs.end(), [](const std::string& path) { return extensionOf(path) == ".png"; });
+  std::unique_ptr<gpu::Device> device;  // outlives the job, whose nodes hold pipelines
   Job job;
   prepareJob(options, wantsPng, job);
   stopIfInterrupted();
@@ -116,7 +117,7 @@ int runRender(const Options& options) {
     std::replace(line.begin(), line.end(), '\n', ' ');
     std::cerr << "radivox: validation: " + line + "\n";
   };
-  const std::unique_ptr<gpu::Device> device = gpu::Device::create(deviceOptions);
+  device = gpu::Device::create(deviceOptions);
   checkSizeFits(job, device->capabilities());
   scene::GpuScene gpuScene(*device, scene, job.lights);
   gpuScene.setCamera(camera, job.request.width, job.request.height);
