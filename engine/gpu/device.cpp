@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "engine/gpu/device_builder.h"
+#include "engine/gpu/host_memory.h"
 #include "engine/gpu/pipeline_cache_file.h"
 
 namespace radivox::gpu {
@@ -138,6 +139,13 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements, VkMemo
            " in use by Radivox); lower the resolution or the image size";
   };
   if (bytes > memoryProperties_.memoryHeaps[heap].size) throw Error(ErrorCode::OutOfMemory, describe());
+
+  // Memory that was allocated but not touched yet still counts as available, hence the second test.
+  if (hostBudget_ > 0 && (bytes > availableHostMemory() || memoryUse_.current + bytes > hostBudget_)) {
+    throw Error(ErrorCode::OutOfMemory, "cannot allocate " + printBytes(bytes) + ": the machine has " + printBytes(hostBudget_) +
+                                            " to spare and " + printBytes(memoryUse_.current) +
+                                            " are in use by Radivox; lower the resolution or the image size");
+  }
 
   VkMemoryAllocateFlagsInfo addressFlags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
   addressFlags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;

@@ -139,6 +139,7 @@ class Device {
   VkPhysicalDeviceMemoryProperties memoryProperties_{};
   mutable std::mutex memoryMutex_;
   MemoryUse memoryUse_;
+  uint64_t hostBudget_ = 0;  ///< CPU devices: what the machine had available at the start; 0: not a CPU device
   std::vector<std::pair<VkDeviceMemory, VkDeviceSize>> allocations_;
   uint32_t failCountdown_ = 0;
   std::atomic<uint32_t> validationMessageCount_{0};  ///< the layer calls from any thread

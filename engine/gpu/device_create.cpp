@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/gpu/device_builder.h"
+#include "engine/gpu/host_memory.h"
 #include "engine/gpu/pipeline_cache_file.h"
 
 namespace radivox::gpu {
@@ -253,6 +254,8 @@ void DeviceBuilder::readCapabilities(const std::vector<std::string>& enabledExte
     const VkMemoryHeap& heap = d.memoryProperties_.memoryHeaps[i];
     if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) c.deviceLocalBytes = std::max(c.deviceLocalBytes, heap.size);
   }
+
+  if (c.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) d.hostBudget_ = availableHostMemory();
 
   c.geometryShader = enabled.features.geometryShader == VK_TRUE;
   c.depthClamp = enabled.features.depthClamp == VK_TRUE;
