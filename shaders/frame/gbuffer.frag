@@ -4,6 +4,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "shared/scene.h"
+#include "shared/texture.glsl"
 
 layout(constant_id = 0) const bool kMasked = false;      // some material has an alpha mask
 layout(constant_id = 1) const bool kObeySides = false;   // back faces of single-sided materials are not there
@@ -26,15 +27,14 @@ layout(location = 4) out uint outTriangle;
 // The camera ray through the pixel's centre. d is not unit.
 void cameraRay(out vec3 origin, out vec3 d) {
   vec2 ndc = gl_FragCoord.xy / vec2(camera.width, camera.height) * 2.0 - 1.0;
-  // Depth 0 is infinitely far in perspective (w = 0 but for rounding), so xyz is the direction with no cancellation.
-  vec4 far = camera.inverseViewProjection * vec4(ndc, 0.0, 1.0);
   if (camera.orthographic == 0u) {
+    // Depth 0 is infinitely far, so this is a direction (w = 0), found without any cancellation.
     origin = camera.position;
-    d = far.xyz - far.w * camera.position;
+    d = (camera.inverseViewProjection * vec4(ndc, 0.0, 1.0)).xyz;
   } else {
-    vec3 p = far.xyz / far.w;
+    vec4 near = camera.inverseViewProjection * vec4(ndc, 1.0, 1.0);
+    origin = near.xyz / near.w;
     d = camera.forward;
-    origin = p - dot(p - camera.position, d) * d;
   }
 }
 
@@ -58,6 +58,24 @@ void main() {
   float alpha = materials[material].alpha;
   vec3 albedo = materials[material].albedo;
   vec3 emission = (flags & kMaterialEmissive) != 0u ? materials[material].emission : vec3(0.0);
+  if (kTextured) {
+    vec2 uvBase = (1.0 - b1 - b2) * vertices[i0].uvBase + b1 * vertices[i1].uvBase + b2 * vertices[i2].uvBase;
+    vec2 uvEmissive = (1.0 - b1 - b2) * vertices[i0].uvEmissive + b1 * vertices[i1].uvEmissive + b2 * vertices[i2].uvEmissive;
+    vec2 baseX = dFdx(uvBase), baseY = dFdy(uvBase);
+    vec2 emissiveX = dFdx(uvEmissive), emissiveY = dFdy(uvEmissive);
+    uint base = materials[material].baseTexture;
+    if (base != kNoTexture) {
+      vec4 texel = sampleTexture(textures[base], uvBase, textureLevel(textures[base], baseX, baseY));
+      albedo = min(albedo * texel.rgb, vec3(0.999));
+      // Coverage comes from level 0, as in the shadow map: a mask must not thin out in the distance.
+      if (kMasked && (flags & kMaterialAlphaMask) != 0u) alpha *= sampleTexture(textures[base], uvBase, 0.0).a;
+    }
+    uint emissive = materials[material].emissiveTexture;
+    if ((flags & kMaterialEmissive) != 0u && emissive != kNoTexture) {
+      emission *= sampleTexture(textures[emissive], uvEmissive, textureLevel(textures[emissive], emissiveX, emissiveY)).rgb;
+    }
+  }
+
   // The rasterizer's snapping may put the centre a hair outside the triangle.
   b1 = clamp(b1, 0.0, 1.0);
   b2 = clamp(b2, 0.0, 1.0 - b1);

@@ -4,6 +4,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "shared/scene.h"
+#include "shared/texture.glsl"
 
 // Writes id + 1 of the surface; depth is the fixed-function depth of the true surface, without any bias.
 layout(constant_id = 0) const bool kMasked = false;      // some material has an alpha mask
@@ -39,6 +40,9 @@ void main() {
   uint flags = materials[material].flags;
   if (kMasked && (flags & kMaterialAlphaMask) != 0u) {
     float alpha = materials[material].alpha;
+    uint base = materials[material].baseTexture;
+    // Level 0: a mask must not thin out in the distance.
+    if (base != kNoTexture) alpha *= sampleTexture(textures[base], uv, 0.0).a;
     if (alpha < materials[material].alphaCutoff) discard;
   }
   if (kObeySides && (flags & kMaterialDoubleSided) == 0u && seenFromBack()) discard;
