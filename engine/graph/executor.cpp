@@ -57,6 +57,7 @@ Executor::Impl::Impl(gpu::Device& device_, Graph& graph_, Plan plan_, const scen
     steps[i].node->prepare(context);
   }
   descriptors = std::make_unique<gpu::DescriptorPool>(device);
+  timestamps = gpu::Timestamps(device, 2 * static_cast<uint32_t>(steps.size()));
   countReadback = gpu::Buffer(device, "graph.counts", uint64_t{countWords} * 4, gpu::MemoryKind::ReadBack);
   VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   poolInfo.queueFamilyIndex = device.queueFamily();

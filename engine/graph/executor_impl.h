@@ -11,6 +11,7 @@
 #include <chrono>
 
 #include "engine/error.h"
+#include "engine/gpu/timestamps.h"
 #include "engine/graph/executor.h"
 
 namespace radivox::graph {
@@ -83,7 +84,8 @@ struct Executor::Impl {
   VkCommandPool commandPool = VK_NULL_HANDLE;
   VkCommandBuffer commandBuffer = VK_NULL_HANDLE;
   std::unique_ptr<gpu::DescriptorPool> descriptors;
-  gpu::Buffer countReadback;  ///< one word per published count
+  gpu::Timestamps timestamps;  ///< two queries a step
+  gpu::Buffer countReadback;   ///< one word per published count
   std::vector<uint32_t> batch;
   std::vector<std::pair<gpu::Image*, VkImageLayout>> layoutsBefore;  ///< of images that the open batch touches
   Progress progress;
@@ -92,6 +94,7 @@ struct Executor::Impl {
   // Frames recorded into a host's command buffer, oldest first.
   struct RecordedFrame {
     std::unique_ptr<gpu::DescriptorPool> descriptors;
+    gpu::Timestamps timestamps;
     std::vector<uint32_t> steps;
   };
   std::vector<std::unique_ptr<RecordedFrame>> inFlight, spare;
@@ -131,7 +134,8 @@ struct Executor::Impl {
   void run();
   void beginCommands();
   void submit();
-  void recordStep(gpu::Commands& commands, uint32_t step);
+  void recordStep(gpu::Commands& commands, const gpu::Timestamps& times, uint32_t step);
+  double elapsedMs(const gpu::Timestamps& times, uint32_t step) const;
   void beginStep(uint32_t step);
   void endStep(uint32_t step);
   void runBatch(uint32_t first);

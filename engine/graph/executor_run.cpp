@@ -26,6 +26,7 @@ void Executor::Impl::beginCommands() {
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   gpu::check(vkBeginCommandBuffer(commandBuffer, &info), "vkBeginCommandBuffer");
   descriptors->reset();
+  timestamps.reset(commandBuffer);
 }
 
 void Executor::Impl::submit() {
@@ -61,9 +62,12 @@ void Executor::Impl::endStep(uint32_t step) {
   }
 }
 
-void Executor::Impl::recordStep(gpu::Commands& commands, uint32_t step) {
+double Executor::Impl::elapsedMs(const gpu::Timestamps& times, uint32_t step) const { return times.readNs(2 * step, 2)[1] * 1e-6; }
+
+void Executor::Impl::recordStep(gpu::Commands& commands, const gpu::Timestamps& times, uint32_t step) {
   const double start = now();
   beginStep(step);
+  times.write(commands.handle(), 2 * step);
   zeroNewOutputs(commands.handle(), step);
   synchronizeStep(commands.handle(), step);
   StepContext& context = *steps[step].context;
@@ -71,6 +75,7 @@ void Executor::Impl::recordStep(gpu::Commands& commands, uint32_t step) {
   context.hostStep = 0;
   steps[step].node->record(context);
   context.current = nullptr;
+  times.write(commands.handle(), 2 * step + 1);
   endStep(step);
   steps[step].stats.wallMs = now() - start;
 }
@@ -171,7 +176,7 @@ void Executor::Impl::runBatch(uint32_t first) {
     gpu::Commands commands(device, commandBuffer, *descriptors);
     for (const uint32_t step : members) {
       if (progress) progress(nodeName(step), 0.0);
-      recordStep(commands, step);
+      recordStep(commands, timestamps, step);
     }
     copyCounts(commandBuffer, members);
     makeVisibleToHost(commandBuffer);
@@ -185,6 +190,7 @@ void Executor::Impl::runBatch(uint32_t first) {
   }
   layoutsBefore.clear();
   readCounts(members);
+  for (const uint32_t step : members) steps[step].stats.gpuMs = elapsedMs(timestamps, step);
   if (progress) {
     for (const uint32_t step : members) progress(nodeName(step), 1.0);
   }
@@ -206,6 +212,7 @@ void Executor::Impl::runHostPaced(uint32_t step) {
     context.hostStep = 0;
     if (progress) progress(nodeName(step), 0.0);
     uint32_t stepCount = state.node->stepCount(context);
+    state.stats.gpuMs = 0;
     for (uint32_t i = 0; i < stepCount; ++i) {
       throwIfCancelled();
       context.hostStep = i;
@@ -219,10 +226,13 @@ void Executor::Impl::runHostPaced(uint32_t step) {
       synchronizeAll(commandBuffer);
       gpu::Commands commands(device, commandBuffer, *descriptors);
       context.current = &commands;
+      timestamps.write(commandBuffer, 2 * step);
       state.node->record(context);
+      timestamps.write(commandBuffer, 2 * step + 1);
       context.current = nullptr;
       makeVisibleToHost(commandBuffer);
       submit();
+      state.stats.gpuMs += elapsedMs(timestamps, step);
       state.node->stepDone(context);
       stepCount = state.node->stepCount(context);
       if (progress && !context.reportedProgress) progress(nodeName(step), double(i + 1) / double(std::max(stepCount, i + 1)));
@@ -298,15 +308,17 @@ void Executor::Impl::record(VkCommandBuffer target) {
   if (spare.empty()) {
     spare.push_back(std::make_unique<RecordedFrame>());
     spare.back()->descriptors = std::make_unique<gpu::DescriptorPool>(device);
+    spare.back()->timestamps = gpu::Timestamps(device, 2 * static_cast<uint32_t>(steps.size()));
     spare.back()->steps.reserve(steps.size());
   }
   RecordedFrame& frame = *spare.back();
   gpu::Commands commands(device, target, *frame.descriptors);
+  frame.timestamps.reset(target);
   synchronizeAll(target);  // whatever the host wrote into its imports in this command buffer
   for (uint32_t i = 0; i < steps.size(); ++i) {
     steps[i].ranThisFrame = false;
     if (stale[i] == 0) continue;
-    recordStep(commands, i);
+    recordStep(commands, frame.timestamps, i);
     frame.steps.push_back(i);
   }
   synchronizeAll(target);  // the host may use outputs at once, in any stage
@@ -320,7 +332,10 @@ void Executor::Impl::record(VkCommandBuffer target) {
 void Executor::Impl::frameCompleted() {
   if (inFlight.empty()) throw Error(ErrorCode::BadInput, "frameCompleted() without a recorded frame");
   RecordedFrame& frame = *inFlight.front();
-  for (const uint32_t step : frame.steps) steps[step].node->frameDone(*steps[step].context);
+  for (const uint32_t step : frame.steps) {
+    steps[step].stats.gpuMs = elapsedMs(frame.timestamps, step);
+    steps[step].node->frameDone(*steps[step].context);
+  }
   frame.steps.clear();
   frame.descriptors->reset();
   spare.push_back(std::move(inFlight.front()));
