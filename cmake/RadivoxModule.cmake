@@ -1,6 +1,7 @@
 # radivox_add_module(NAME SOURCES a.cpp … SHADERS b.comp …): a library of nodes that a program loads while it runs (radivox --module).
 # A shader b.comp becomes the header "b.comp.h" with `const uint32_t b_comp[]`, SPIR-V for ComputePipelineInfo::code.
-# The library takes the engine's symbols from the program: link nothing of radivox into it, and give the program ENABLE_EXPORTS.
+# The library takes the engine's symbols from the program that loads it (radivox_module_host): it links nothing of radivox, holds its own
+# objects, and shows only its entry point, so that a module that is also linked in does not meet itself.
 function(radivox_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 module "" "" "SOURCES;SHADERS")
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/${name})
@@ -26,9 +27,18 @@ inline constexpr uint32_t @identifier@[] = {
     list(APPEND headers ${words})
   endforeach()
   add_library(${name} MODULE ${module_SOURCES} ${headers})
-  set_target_properties(${name} PROPERTIES PREFIX "")
+  set(map ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/radivox_module.map)
+  target_link_options(${name} PRIVATE -Wl,--version-script=${map})
+  set_target_properties(${name} PROPERTIES PREFIX "" LINK_DEPENDS ${map} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
   target_compile_definitions(${name} PRIVATE RADIVOX_SHARED_MODULE)
   target_include_directories(${name} PRIVATE ${generated} ${radivox_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE Vulkan::Headers glm::glm)
   radivox_target(${name})
+endfunction()
+
+# radivox_module_host(TARGET): a program that can load modules: it exports its symbols and holds all of the engine, used by itself or not.
+function(radivox_module_host target)
+  set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON)
+  target_link_libraries(${target} PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,radivox_engine>)
+  set_target_properties(${target} PROPERTIES LINK_LIBRARY_OVERRIDE_radivox_engine WHOLE_ARCHIVE)
 endfunction()

@@ -40,3 +40,5 @@ void registerNodes(plugin::Registry& registry) {
 }
 
 }  // namespace radivox::clustered_voxel
+
+RADIVOX_MODULE(radivox::clustered_voxel::registerNodes);

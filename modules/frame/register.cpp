@@ -16,3 +16,5 @@ void registerNodes(plugin::Registry& registry) {
 }
 
 }  // namespace radivox::frame
+
+RADIVOX_MODULE(radivox::frame::registerNodes);
