@@ -39,6 +39,6 @@ endfunction()
 # radivox_module_host(TARGET): a program that can load modules: it exports its symbols and holds all of the engine, used by itself or not.
 function(radivox_module_host target)
   set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON)
-  target_link_libraries(${target} PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,radivox_engine>)
-  set_target_properties(${target} PROPERTIES LINK_LIBRARY_OVERRIDE_radivox_engine WHOLE_ARCHIVE)
+  # As objects: an archive would bring only what the program itself uses.
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:radivox_engine>)
 endfunction()

@@ -13,7 +13,7 @@ function(radivox_embed_shaders target)
     get_filename_component(folder ${spirv} DIRECTORY)
     file(MAKE_DIRECTORY ${folder})
     add_custom_command(OUTPUT ${spirv}
-      COMMAND ${GLSLANG_VALIDATOR} --quiet --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR}/shaders -P\#extension\ GL_GOOGLE_include_directive:require
+      COMMAND ${GLSLANG_VALIDATOR} --quiet --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR}/shaders
         -x --depfile ${spirv}.d -o ${spirv} ${source}
       DEPENDS ${source} DEPFILE ${spirv}.d COMMENT "shader ${name}" VERBATIM)
     list(APPEND outputs ${spirv})
