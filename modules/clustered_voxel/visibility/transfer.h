@@ -9,7 +9,7 @@
 // source  METHODS section 1, Bounce: F_cc' = Σ_{s∈c} a_s m_s,c' / (M A_c). Near hits count for their face's cluster.
 //
 // Sums are integers (areas to 31 bits of the cluster's largest face), so any order gives the same bits, and Σ_c' F_cc' + sky = 1 but
-// for the rounding of each entry to float. Faces are taken to have the same number of rays; if not, they weigh by a_s M_s.
+// for the rounding of each entry to float (less where rays ended on the backs of one-sided surfaces). Faces are taken to have the same number of rays; if not, they weigh by a_s M_s.
 #pragma once
 
 #include <memory>

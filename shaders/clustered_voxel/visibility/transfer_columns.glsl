@@ -22,11 +22,12 @@ const uint kWindow = 65536u;
 const uint kWords = kWindow / 32u;
 shared uint columnBits[kWords];
 
-// Column of an entry: the cluster, or that of the near face. kMissBase for rays that left the scene.
+// Column of an entry: the cluster, or that of the near face; kMissBase for rays that left the scene, kAbsorbed for those lost on backs.
 uint columnOf(uint entry) {
   uint id = entry & kEntryIdMask;
   if (id < push.clusterCount) return id;
-  return id < push.clusterCount + push.faceCount ? labels[id - push.clusterCount] : kMissBase;
+  if (id < push.clusterCount + push.faceCount) return labels[id - push.clusterCount];
+  return id < kAbsorbed ? kMissBase : kAbsorbed;
 }
 uint countOf(uint entry) { return (entry >> 24) + 1u; }
 

@@ -1,0 +1,158 @@
+// The cluster matrix against sums in double over the same rows.
+#include "modules/clustered_voxel/visibility/transfer.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "tests/oracles/cluster_oracle.h"
+#include "tests/oracles/gpu_fixture.h"
+#include "tests/oracles/node_harness.h"
+
+namespace radivox {
+namespace {
+
+struct Random {
+  std::mt19937 engine;
+  uint32_t operator()() { return static_cast<uint32_t>(engine()); }
+};
+
+/// Faces in clusters, and rows that see anything: made up, so that every kind of entry occurs.
+struct Case {
+  std::vector<shared::Face> faces;
+  std::vector<uint32_t> labels;
+  uint32_t clusterCount = 0;
+  oracle::VisibilityRows rows;
+};
+
+Case makeCase(uint32_t faceCount, uint32_t clusterCount, uint32_t entriesPerRow, uint32_t seed, bool closed = false) {
+  Random random{std::mt19937(seed)};
+  Case c;
+  c.clusterCount = clusterCount;
+  for (uint32_t s = 0; s < faceCount; ++s) {
+    shared::Face face{};
+    face.area = std::exp2(-12.f * static_cast<float>(random()) / 4294967296.f);  // from slivers to whole faces
+    c.faces.push_back(face);
+    c.labels.push_back(s < clusterCount ? s : random() % clusterCount);
+    std::map<uint32_t, uint32_t> row;
+    for (uint32_t rays = 128; rays > 0;) {
+      const uint32_t kind = closed ? random() % 8 : random() % 10;
+      const uint32_t id = kind < 6    ? random() % clusterCount
+                          : kind < 8  ? clusterCount + random() % faceCount
+                          : kind == 8 ? shared::kMissBase + random() % 6
+                                      : shared::kAbsorbed;
+      const uint32_t count = std::min(rays, 1 + random() % (2 * 128 / entriesPerRow));
+      row[id] += count;
+      rays -= count;
+    }
+    c.rows.emplace_back(row.begin(), row.end());
+  }
+  return c;
+}
+
+class TransferTest : public oracles::GpuTest {
+ protected:
+  struct Output {
+    std::vector<uint32_t> rowStart;
+    std::vector<glm::uvec2> entries;
+    std::vector<float> sky;
+  };
+  Output transfer(const Case& c) {
+    oracle::VoxelStructures s;
+    s.faces = c.faces;
+    s.voxels.assign(c.faces.size(), 0);
+    for (uint32_t i = 0; i < s.faces.size(); ++i) s.faces[i].key = i << 3;
+    const auto packed = oracle::packRows(c.rows);
+    std::vector<gpu::Buffer> chunks;
+    std::vector<uint64_t> table;
+    for (const auto& chunk : packed.chunks) {
+      chunks.emplace_back(device(), "chunk", chunk.size() * 4);
+      if (!chunk.empty()) gpu::upload(device(), chunks.back(), chunk);
+      table.push_back(chunks.back().address());
+    }
+    oracles::NodeHarness h(device());
+    h.importBuffer("in.row_start", packed.rowStart);
+    h.importBuffer("in.entries", packed.chunks.empty() ? std::vector<uint32_t>{0} : packed.chunks[0]);
+    h.importBuffer("in.chunk_table", table);
+    h.importBuffer("in.faces", c.faces);
+    h.importBuffer("in.labels", c.labels);
+    h.importBuffer("in.clusters", oracle::describeClusters(s, c.labels, c.clusterCount));
+    h.importBuffer("in.members", oracle::listMembers(c.labels, c.clusterCount));
+    h.setCount("faces", c.faces.size());
+    h.setCount("clusters", c.clusterCount);
+    h.add<clustered_voxel::Transfer>("transfer");
+    h.connect("in.row_start", "transfer.visibility_row_start");
+    h.connect("in.entries", "transfer.visibility_entries");
+    for (const char* port : {"chunk_table", "faces", "labels", "clusters", "members"})
+      h.connect(std::string("in.") + port, std::string("transfer.") + port);
+    for (const char* port : {"row_start", "entries", "sky"}) h.output(std::string("transfer.") + port);
+    h.run();
+    Output out;
+    out.rowStart = h.download<uint32_t>("transfer.row_start", c.clusterCount + 1);
+    out.sky = h.download<float>("transfer.sky", c.clusterCount);
+    out.entries = h.downloadGrown<glm::uvec2>("transfer.entries").at(0);
+    out.entries.resize(h.count("transfer_entries"));
+    EXPECT_EQ(out.rowStart.back(), out.entries.size());
+    return out;
+  }
+
+  void check(const Case& c) {
+    const Output out = transfer(c);
+    const oracle::SparseMatrix expected = oracle::clusterTransfer(c.rows, c.faces, c.labels, c.clusterCount);
+    double worst = 0, worstSum = 0;
+    for (uint32_t i = 0; i < c.clusterCount; ++i) {
+      ASSERT_EQ(out.rowStart[i + 1] - out.rowStart[i], expected.rows[i].size()) << "row " << i;
+      double sum = static_cast<double>(out.sky[i]), expectedSum = expected.sky[i];
+      auto column = expected.rows[i].begin();
+      for (uint32_t e = out.rowStart[i]; e < out.rowStart[i + 1]; ++e, ++column) {
+        ASSERT_EQ(out.entries[e].x, column->first) << "row " << i;
+        const double weight = static_cast<double>(std::bit_cast<float>(out.entries[e].y));
+        worst = std::max(worst, std::abs(weight - column->second));
+        sum += weight;
+        expectedSum += column->second;
+      }
+      worst = std::max(worst, std::abs(static_cast<double>(out.sky[i]) - expected.sky[i]));
+      worstSum = std::max(worstSum, std::abs(sum - expectedSum));
+    }
+    EXPECT_LT(worst, 1e-6);
+    EXPECT_LT(worstSum, 1e-6);
+    std::printf("[ figures  ] %u clusters, %zu entries, largest error %.2e, of a row sum %.2e\n", c.clusterCount, out.entries.size(), worst,
+                worstSum);
+  }
+};
+
+TEST_F(TransferTest, EqualsSumsInDouble) { check(makeCase(3000, 150, 40, 1)); }
+TEST_F(TransferTest, OneCluster) { check(makeCase(700, 1, 20, 2)); }
+TEST_F(TransferTest, EveryFaceACluster) { check(makeCase(300, 300, 30, 3)); }
+TEST_F(TransferTest, SeveralChunks) { check(makeCase(2 * shared::kRowsPerChunk + 100, 700, 8, 4)); }
+// 65536 columns are one window; that many rows take a while.
+TEST_F(TransferTest, SlowMoreColumnsThanAWindow) { check(makeCase(70000, 66000, 4, 5)); }
+
+TEST_F(TransferTest, ClosedRowsSumToOne) {
+  const Case c = makeCase(2000, 120, 40, 6, true);
+  const Output out = transfer(c);
+  for (uint32_t i = 0; i < c.clusterCount; ++i) {
+    double sum = 0;
+    for (uint32_t e = out.rowStart[i]; e < out.rowStart[i + 1]; ++e) sum += static_cast<double>(std::bit_cast<float>(out.entries[e].y));
+    EXPECT_EQ(out.sky[i], 0.f);
+    EXPECT_NEAR(sum, 1.0, 1e-6);
+  }
+}
+
+TEST_F(TransferTest, TwoRunsGiveTheSameBits) {
+  const Case c = makeCase(3000, 80, 40, 7);
+  const Output a = transfer(c), b = transfer(c);
+  EXPECT_EQ(a.rowStart, b.rowStart);
+  EXPECT_EQ(a.entries, b.entries);
+  EXPECT_EQ(a.sky, b.sky);
+}
+
+TEST_F(TransferTest, NothingGivesNoRows) {
+  const Output out = transfer(Case{});
+  EXPECT_TRUE(out.entries.empty());
+}
+
+}  // namespace
+}  // namespace radivox
