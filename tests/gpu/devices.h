@@ -13,6 +13,7 @@ class BothBindingsTest : public ::testing::TestWithParam<bool> {
       gpu::DeviceOptions options;
       options.validation = true;
       options.pushDescriptors = false;
+      options.onMessage = [this](const std::string& message) { messages_ += "\n" + message; };
       own_ = gpu::Device::create(options);
       ASSERT_FALSE(own_->capabilities().pushDescriptor);
     }
@@ -24,11 +25,13 @@ class BothBindingsTest : public ::testing::TestWithParam<bool> {
       EXPECT_EQ(own_->memoryUse().allocationCount, 0u);
     }
     own_.reset();
+    EXPECT_EQ(messages_, "");  // closing included: handles left behind are named there
   }
   gpu::Device& device() { return own_ ? *own_ : oracles::sharedDevice(); }
   void run(const std::function<void(gpu::Commands&)>& record) { oracles::runCommands(device(), record); }
 
  private:
+  std::string messages_;
   std::unique_ptr<gpu::Device> own_;
   std::unique_ptr<oracles::SilenceCheck> silence_;
 };
