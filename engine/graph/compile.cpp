@@ -47,7 +47,7 @@ uint32_t Draft::publisher(const std::string& count) const {
 
 std::string Draft::sourceName(const Source& source) const {
   if (source.node == kNone) return input.imports[source.importIndex].name;
-  return source.port == kNone ? nodeName(source.node) : portName(source.node, source.port);
+  return source.port == kNone ? source.edge->from.print() : portName(source.node, source.port);
 }
 
 std::vector<std::string> shapeCounts(const Port& port) {

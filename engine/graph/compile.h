@@ -13,10 +13,11 @@ constexpr uint32_t kNone = 0xffffffffu;
 
 /// Where a Read or Modify port gets its resource from.
 struct Source {
-  uint32_t node = kNone;         ///< producing node
-  uint32_t port = kNone;         ///< its port; kNone with a node: the node is left out and did not declare it
-  uint32_t importIndex = kNone;  ///< or the import
-  bool broken = false;           ///< its edge is in error already: not to be called unconnected as well
+  uint32_t node = kNone;              ///< producing node
+  uint32_t port = kNone;              ///< its port; kNone with a node: the node is left out and did not declare it
+  uint32_t importIndex = kNone;       ///< or the import
+  const Graph::Edge* edge = nullptr;  ///< null where a port binds itself to an import
+  bool broken = false;                ///< its edge is in error already: not to be called unconnected as well
   bool isConnected() const { return node != kNone || importIndex != kNone; }
 };
 

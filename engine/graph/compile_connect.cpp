@@ -76,6 +76,7 @@ const char* accessName(Access access) {
 bool connectEdge(Draft& draft, const Graph::Edge& edge) {
   const std::string place = "edge " + edge.from.print() + " → " + edge.to.print();
   Source source;
+  source.edge = &edge;
   const uint32_t fromNode = findNode(draft, edge.from.node);
   const uint32_t import = findImport(draft, edge.from.print());
   if (fromNode != kNone && import != kNone) {

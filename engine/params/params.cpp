@@ -186,18 +186,21 @@ std::string Table::print() const {
 std::string nearestName(std::string_view name, const std::vector<std::string>& candidates) {
   std::string best;
   size_t bestDistance = std::numeric_limits<size_t>::max();
-  std::vector<size_t> row;
+  std::vector<size_t> before, last, row;  // rows i − 1, i and i + 1 of the table of distances
   for (const std::string& candidate : candidates) {
-    // Levenshtein distance, one row at a time.
+    // Insertions, deletions, replacements, and two neighbours swapped ("uot"), which is how names are mistyped.
     row.resize(candidate.size() + 1);
     for (size_t j = 0; j <= candidate.size(); ++j) row[j] = j;
+    last = row;
     for (size_t i = 0; i < name.size(); ++i) {
-      size_t diagonal = row[0];
+      before = last;
+      last = row;
       row[0] = i + 1;
       for (size_t j = 0; j < candidate.size(); ++j) {
-        const size_t replaced = diagonal + (name[i] == candidate[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+        row[j + 1] = std::min({last[j] + (name[i] == candidate[j] ? 0 : 1), row[j] + 1, last[j + 1] + 1});
+        if (i > 0 && j > 0 && name[i] == candidate[j - 1] && name[i - 1] == candidate[j]) {
+          row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
+        }
       }
     }
     const size_t distance = row.back();

@@ -17,9 +17,7 @@ class ExecutorTest : public GpuTest {};
 
 /// Writes `out`, 4 words of its parameter `value`.
 FakeNode& addFill(graph::Graph& graph, const std::string& name, Extent words = 4) {
-  FakeNode& node = addFake(graph, name, [words](Declaration& d) {
-    d.write("out", Shape::buffer(4, words), "words", graph::UseTransfer);
-  });
+  FakeNode& node = addFake(graph, name, [words](Declaration& d) { d.write("out", Shape::buffer(4, words), "words", graph::UseTransfer); });
   node.onRecord = [&node](RecordContext& c) { c.commands().fill(c.buffer("out"), node.value); };
   return node;
 }
@@ -32,7 +30,9 @@ FakeNode& addCopy(graph::Graph& graph, const std::string& name, Extent words = 4
         d.read("in", "words", graph::UseTransfer);
         d.write("out", Shape::buffer(4, words), "words", graph::UseTransfer);
       },
-      [](RecordContext& c) { c.commands().copy(c.buffer("in"), c.buffer("out"), std::min(c.buffer("in").bytes(), c.buffer("out").bytes())); });
+      [](RecordContext& c) {
+        c.commands().copy(c.buffer("in"), c.buffer("out"), std::min(c.buffer("in").bytes(), c.buffer("out").bytes()));
+      });
 }
 
 TEST_F(ExecutorTest, RunsOnlyWhatChanged) {

@@ -60,9 +60,7 @@ struct PlanInput {
   gpu::Capabilities capabilities;
   std::vector<graph::Import> imports;
   graph::Counts counts;
-  graph::Plan compile(const graph::Graph& graph) const {
-    return graph::compile(graph, {traits, request, capabilities, imports, counts});
-  }
+  graph::Plan compile(const graph::Graph& graph) const { return graph::compile(graph, {traits, request, capabilities, imports, counts}); }
   /// The message of the Error that compile() throws; "" when it does not.
   std::string error(const graph::Graph& graph) const {
     try {
