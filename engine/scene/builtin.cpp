@@ -18,6 +18,10 @@ struct Entry {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> table = {
+      {{"atrium",
+        "a two-storey arcaded court with curtains, open to the sky, in the sun; cameras court and gallery",
+        {"triangles=60000", "sky=0.4"}},
+       buildAtrium},
       {{"cornell", "a box with a red and a green wall, two blocks and a one-sided emissive quad under the ceiling", {}},
        [](MeshBuilder& m, BuiltinParameters& p) { buildCornell(m, p, false); }},
       {{"cornell_point", "the same, lit by a point light", {}}, [](MeshBuilder& m, BuiltinParameters& p) { buildCornell(m, p, true); }},

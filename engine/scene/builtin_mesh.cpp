@@ -84,12 +84,30 @@ uint32_t MeshBuilder::addVertex(const glm::dvec3& position, const glm::dvec3& no
 }
 
 void MeshBuilder::addTriangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, uint32_t material) {
+  if (!countTriangles(1)) return;
   const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
   for (const glm::dvec3& p : {a, b, c}) assembly_.indices.push_back(addVertex(p, normal));
   assembly_.triangleMaterials.push_back(material);
 }
 
+void MeshBuilder::addTriangle(const glm::dvec3 (&corners)[3], const glm::dvec3 (&normals)[3], uint32_t material) {
+  if (!countTriangles(1)) return;
+  for (int k = 0; k < 3; ++k) assembly_.indices.push_back(addVertex(corners[k], normals[k]));
+  assembly_.triangleMaterials.push_back(material);
+}
+
+bool MeshBuilder::countTriangles(size_t count) {
+  triangleCount_ += count;
+  return !countOnly_;
+}
+
+void MeshBuilder::stopCounting() {
+  countOnly_ = false;
+  triangleCount_ = assembly_.triangleMaterials.size();
+}
+
 void MeshBuilder::addQuad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d, uint32_t material) {
+  if (!countTriangles(2)) return;
   const glm::dvec3 normal = glm::normalize(glm::cross(c - a, d - b));
   const uint32_t i = addVertex(a, normal);
   addVertex(b, normal);
@@ -101,20 +119,32 @@ void MeshBuilder::addQuad(const glm::dvec3& a, const glm::dvec3& b, const glm::d
 
 void MeshBuilder::addSurface(const Surface& surface, uint32_t columns, uint32_t rows, uint32_t material, bool smooth) {
   const auto at = [&](uint32_t i, uint32_t j) { return surface(static_cast<double>(i) / columns, static_cast<double>(j) / rows); };
+  if (countOnly_) {
+    triangleCount_ += size_t{2} * columns * rows;
+    return;
+  }
   if (!smooth) {
     for (uint32_t j = 0; j < rows; ++j) {
       for (uint32_t i = 0; i < columns; ++i) addQuad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), material);
     }
     return;
   }
+  triangleCount_ += size_t{2} * columns * rows;
   const auto first = static_cast<uint32_t>(assembly_.positions.size());
   for (uint32_t j = 0; j <= rows; ++j) {
     for (uint32_t i = 0; i <= columns; ++i) {
       const double u = static_cast<double>(i) / columns, v = static_cast<double>(j) / rows;
       const double du = 0.02 / columns, dv = 0.02 / rows;
-      const glm::dvec3 tangentU = surface(std::min(u + du, 1.0), v) - surface(std::max(u - du, 0.0), v);
-      const glm::dvec3 tangentV = surface(u, std::min(v + dv, 1.0)) - surface(u, std::max(v - dv, 0.0));
-      addVertex(surface(u, v), glm::normalize(glm::cross(tangentU, tangentV)));
+      const auto normalAt = [&](double vAt) {
+        const glm::dvec3 tangentU = surface(std::min(u + du, 1.0), vAt) - surface(std::max(u - du, 0.0), vAt);
+        const glm::dvec3 tangentV = surface(u, std::min(vAt + dv, 1.0)) - surface(u, std::max(vAt - dv, 0.0));
+        const glm::dvec3 n = glm::cross(tangentU, tangentV);
+        const double scale = glm::dot(tangentV, tangentV);
+        return glm::length(n) > 1e-6 * scale ? glm::normalize(n) : glm::dvec3(0.0);
+      };
+      glm::dvec3 normal = normalAt(v);
+      if (normal == glm::dvec3(0.0)) normal = normalAt(v < 0.5 ? v + dv : v - dv);  // a pole, where a row shrinks to a point
+      addVertex(surface(u, v), normal);
     }
   }
   for (uint32_t j = 0; j < rows; ++j) {

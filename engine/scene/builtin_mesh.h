@@ -1,6 +1,8 @@
 // Building blocks of the built-in scenes. Internal to engine/scene.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "engine/scene/builtin.h"
@@ -33,6 +35,8 @@ class MeshBuilder {
   /// Fronts are counter-clockwise.
   void addTriangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, uint32_t material);
   void addQuad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d, uint32_t material);
+  /// With normals of its own.
+  void addTriangle(const glm::dvec3 (&corners)[3], const glm::dvec3 (&normals)[3], uint32_t material);
   /// columns × rows cells of a surface over [0, 1]²; the front is where ∂u × ∂v points. Vertices are shared; normals are the surface's own
   /// (from central differences) when `smooth`, else each cell is flat.
   using Surface = std::function<glm::dvec3(double u, double v)>;
@@ -49,16 +53,22 @@ class MeshBuilder {
   void addPointLight(const glm::dvec3& position, const glm::vec3& intensity);
   void addCamera(const std::string& name, const glm::dvec3& position, const glm::dvec3& target, double yfov);
   void setSky(const glm::vec3& radiance) { scene_.skyRadiance = radiance; }
-  size_t triangleCount() const { return assembly_.triangleMaterials.size(); }
+  /// Triangles so far; while counting only, nothing is stored and surfaces are not evaluated.
+  size_t triangleCount() const { return triangleCount_; }
+  void startCounting() { countOnly_ = true; }
+  void stopCounting();
 
   /// Triangles sorted by material; everything scaled, then moved (irradiances stay: intensities grow with the scale squared).
   Scene finish(double scale, const glm::dvec3& offset);
 
  private:
   uint32_t addVertex(const glm::dvec3& position, const glm::dvec3& normal);
+  bool countTriangles(size_t count);  ///< false: only counting
   void sortByMaterial();
   Scene scene_;
   Assembly assembly_;
+  size_t triangleCount_ = 0;
+  bool countOnly_ = false;
   std::vector<glm::dvec3> lightPositions_, cameraPositions_;
 };
 
@@ -75,5 +85,6 @@ void buildPlane(MeshBuilder& mesh, BuiltinParameters& parameters);
 void buildSphere(MeshBuilder& mesh, BuiltinParameters& parameters);
 void buildRamp(MeshBuilder& mesh, BuiltinParameters& parameters);
 void buildStaircase(MeshBuilder& mesh, BuiltinParameters& parameters);
+void buildAtrium(MeshBuilder& mesh, BuiltinParameters& parameters);
 
 }  // namespace radivox::scene
