@@ -32,8 +32,8 @@ void cameraRay(out vec3 origin, out vec3 d) {
     origin = camera.position;
     d = (camera.inverseViewProjection * vec4(ndc, 0.0, 1.0)).xyz;
   } else {
-    vec4 near = camera.inverseViewProjection * vec4(ndc, 1.0, 1.0);
-    origin = near.xyz / near.w;
+    // Across the view from the camera: unprojecting the far plane's end of the matrix would cancel kilometres.
+    origin = camera.position + ndc.x * camera.inverseViewProjection[0].xyz + ndc.y * camera.inverseViewProjection[1].xyz;
     d = camera.forward;
   }
 }

@@ -78,7 +78,9 @@ TEST_F(DirectTest, PointLightFallsWithTheSquareAndStopsAtItsRange) {
     EXPECT_EQ(least == 0.0, range > 0.f);
     // Under the light: I / h².
     const glm::dvec3 below = oracle.punctualIrradiance({0.5, 0, -0.5}, {0, 1, 0}, {0, 1, 0}, false);
-    if (range == 0.f) EXPECT_NEAR(below.x, 30 / 2.25, 1e-9);
+    if (range == 0.f) {
+      EXPECT_NEAR(below.x, 30 / 2.25, 1e-9);
+    }
   }
 }
 
@@ -130,7 +132,9 @@ TEST_F(DirectTest, EmitterNearlyTouchingIsNotSingular) {
   for (const Sample& s : surfaces(run)) {
     if (s.normal.y < 0.5 || s.position.y > 0.001) continue;
     EXPECT_LE(s.irradiance.x, 2 * std::numbers::pi * 1.0001);
-    if (std::abs(s.position.x) < 0.8 && std::abs(s.position.z) < 0.8) EXPECT_NEAR(s.irradiance.x, 2 * std::numbers::pi, 0.02);
+    if (std::abs(s.position.x) < 0.8 && std::abs(s.position.z) < 0.8) {
+      EXPECT_NEAR(s.irradiance.x, 2 * std::numbers::pi, 0.02);
+    }
   }
 }
 
@@ -236,7 +240,9 @@ TEST_F(DirectTest, EmittedImageIsAddedWhereEmittersHaveNoSamples) {
     graph::Declaration declaration(traits, request, none);
     frame_test::makeNode("frame.direct")->declare(declaration);
     for (const graph::Port& port : declaration.ports)
-      if (port.name == "emitted") EXPECT_EQ(port.unwanted, samples > 0);
+      if (port.name == "emitted") {
+        EXPECT_EQ(port.unwanted, samples > 0);
+      }
   }
 }
 

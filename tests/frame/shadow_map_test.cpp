@@ -100,7 +100,9 @@ size_t compareWithRays(FrameRun& run, const SceneBuilder& b, const scene::LightO
   }
   for (uint32_t layer = 0; layer < setup.shadowLayers; ++layer)
     for (size_t i = 0; i < owned[layer].size(); ++i)
-      if (!owned[layer][i]) EXPECT_EQ(ids[layer][i], 0u) << "a draw left its tile";
+      if (!owned[layer][i]) {
+        EXPECT_EQ(ids[layer][i], 0u) << "a draw left its tile";
+      }
   EXPECT_GT(hits, compared / 10);
   return compared;
 }
