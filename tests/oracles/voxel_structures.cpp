@@ -51,6 +51,20 @@ Corners gridCorners(const SoupTriangle& triangle, const shared::Grid& grid) {
   return corners;
 }
 
+/// Halves a block of `edge` voxels that the triangle overlaps, down to single voxels. `margin` dilates every cube.
+void fillBlock(VoxelStructures& s, const Corners& corners, const glm::ivec3& low, int edge, double margin) {
+  if (glm::any(glm::greaterThanEqual(low, glm::ivec3(s.grid.size)))) return;
+  if (!overlapsCube(corners, glm::dvec3(low) + 0.5 * edge, 0.5 * edge + margin)) return;
+  if (edge == 1) {
+    const uint32_t bit = shared::bitOf(glm::uvec3(low));
+    glm::uvec2& word = s.occupancy[shared::brickOf(glm::uvec3(low), s.grid.bricks)];
+    (bit < 32 ? word.x : word.y) |= 1u << (bit & 31);
+    return;
+  }
+  for (int child = 0; child < 8; ++child)
+    fillBlock(s, corners, low + edge / 2 * glm::ivec3(child & 1, (child >> 1) & 1, child >> 2), edge / 2, margin);
+}
+
 glm::dvec3 normalized(const glm::dvec3& v) {
   const double length = glm::length(v);
   return length > 0.0 ? v / length : glm::dvec3(0.0);
@@ -169,6 +183,13 @@ uint32_t VoxelStructures::faceIndex(uint32_t voxel, uint32_t f) const {
   return first[voxel] + static_cast<uint32_t>(std::popcount(mask[voxel] & ((1u << f) - 1u)));
 }
 
+void fillOccupancy(VoxelStructures& s, const Soup& soup, double half) {
+  s.occupancy.assign(s.grid.brickCount, glm::uvec2(0));
+  int rootEdge = 1;
+  while (rootEdge < static_cast<int>(std::max({s.grid.size.x, s.grid.size.y, s.grid.size.z}))) rootEdge *= 2;
+  for (const SoupTriangle& triangle : soup) fillBlock(s, gridCorners(triangle, s.grid), glm::ivec3(0), rootEdge, half - 0.5);
+}
+
 void indexVoxels(VoxelStructures& s) {
   const uint32_t brickCount = s.grid.brickCount;
   s.rank.assign(brickCount, 0);
@@ -227,16 +248,7 @@ VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool
   VoxelStructures s;
   s.grid = soup.empty() ? clustered_voxel::makeGrid(glm::vec3(0.f), glm::vec3(0.f), resolution)
                         : clustered_voxel::makeGrid(low, high, resolution);
-  s.occupancy.assign(s.grid.brickCount, glm::uvec2(0));
-  for (const SoupTriangle& triangle : soup) {
-    const Corners corners = gridCorners(triangle, s.grid);
-    forEachVoxel(rangeOf(corners, s.grid), [&](const glm::ivec3& voxel) {
-      if (!overlapsCube(corners, glm::dvec3(voxel) + 0.5, 0.5)) return;
-      const uint32_t bit = shared::bitOf(glm::uvec3(voxel));
-      glm::uvec2& word = s.occupancy[shared::brickOf(glm::uvec3(voxel), s.grid.bricks)];
-      (bit < 32 ? word.x : word.y) |= 1u << (bit & 31);
-    });
-  }
+  fillOccupancy(s, soup);
   indexVoxels(s);
   std::map<uint32_t, FaceSum> sums;
   s.voxelArea.assign(s.voxels.size(), 0.0);

@@ -58,6 +58,8 @@ struct VoxelStructures {
 /// `bothSides` as the parameter sides=both (true) or gltf (false).
 VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool bothSides = true);
 
+/// Sets the bit of every voxel of `structures.grid` whose closed cube of half edge `half` (0.5: the voxel) a triangle overlaps.
+void fillOccupancy(VoxelStructures& structures, const Soup& soup, double half = 0.5);
 /// rank, voxels, distance of given occupancy bits (for tests that make up their own voxels).
 void indexVoxels(VoxelStructures& structures);
 /// first of given masks; sizes `faces` and sets their keys.

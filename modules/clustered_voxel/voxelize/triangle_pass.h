@@ -22,7 +22,7 @@ class TrianglePass {
   enum class Method : uint32_t { Auto, Hardware, Geometry, Compute };
 
   static params::Param methodParam(Method* method);
-  /// Auto: compute. Measured on lavapipe and on an H200 (docs/voxelization.md), it is the fastest of the three everywhere.
+  /// Auto: compute, which on lavapipe is the fastest.
   static Method resolve(Method method) { return method == Method::Auto ? Method::Compute : method; }
   /// Stages that the bindings of a pass are used in.
   static uint32_t useOf(Method method) {

@@ -41,7 +41,8 @@ struct Surface {
 };
 
 Surface surfaceOf(Triangle t, ivec3 voxel, Piece piece, uint material) {
-  Surface surface = Surface(1.0, materials[material].albedo, kEmissive ? materials[material].emission : vec3(0.0), piece.middle);
+  Surface surface = Surface(1.0, materials[material].albedo, vec3(0.0), piece.middle);
+  if (kEmissive && (materials[material].flags & kMaterialEmissive) != 0u) surface.emission = materials[material].emission;
   bool isMasked = kMasked && (materials[material].flags & kMaterialAlphaMask) != 0u;
   uint base = kTextured ? materials[material].baseTexture : kNoTexture;
   uint emissive = kTextured && kEmissive ? materials[material].emissiveTexture : kNoTexture;
