@@ -16,8 +16,14 @@ using nlohmann::json;
 constexpr const char* kDefaultGraph = "clustered_voxel";
 
 json parsePreset(const Source& preset) {
+  // Copies and prints of JSON recurse: nesting beyond what a preset needs could end the stack.
+  const auto limitDepth = [&preset](int depth, json::parse_event_t, json&) {
+    constexpr int kDeepest = 16;
+    if (depth > kDeepest) throw Error(ErrorCode::BadInput, preset.source + ": nested too deeply; write {\"set\": {\"node.param\": value}}");
+    return true;
+  };
   try {
-    const json parsed = json::parse(preset.text);
+    json parsed = json::parse(preset.text, limitDepth);
     if (parsed.is_object()) return parsed;
   } catch (const json::parse_error& e) {
     throw Error(ErrorCode::BadInput, preset.source + ": byte " + std::to_string(e.byte) + ": not JSON; mend the file");

@@ -71,11 +71,12 @@ void refuseExtras(const CLI::App& command, const std::string& what) {
   extra = extra.substr(0, extra.find('='));
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
   }
-  const std::string near = params::nearestName(extra, names);
+  // Without the dashes, which every option shares.
+  const std::string near = params::nearestName(extra.substr(std::min(extra.find_first_not_of('-'), extra.size())), names);
   throw Error(ErrorCode::BadInput,
-              "unknown option '" + extra + "'; " + (near.empty() ? "see `radivox " + what + "--help`" : "did you mean '" + near + "'?"));
+              "unknown option '" + extra + "'; " + (near.empty() ? "see `radivox " + what + "--help`" : "did you mean '--" + near + "'?"));
 }
 
 void requireScene(const Options& options, const std::string& name) {

@@ -64,7 +64,7 @@ TEST(Assets, EveryPresetAppliesToItsGraph) {
   const std::string info = runRadivox({"info"}).out;
   for (const fs::path& path : listAssets("presets")) {
     const json preset = parseFile(path);
-    EXPECT_EQ(preset.at("name"), path.stem()) << path;
+    EXPECT_EQ(preset.at("name").get<std::string>(), path.stem().string()) << path;
     EXPECT_NE(info.find("\n  " + path.stem().string() + ": "), std::string::npos) << path;
     for (const std::string& name : {path.stem().string(), path.string()}) {
       const CommandResult result = runRadivox({"graph", "builtin:cornell", "--preset", name});
@@ -96,7 +96,7 @@ TEST(Assets, PlansComeInThreeFormats) {
   const CommandResult dot = runRadivox({"graph", "builtin:cornell_point", "--format", "dot"});
   EXPECT_EQ(dot.out.rfind("digraph", 0), 0u) << dot.out.substr(0, 40);
   const CommandResult parsed = runRadivox({"graph", "builtin:cornell_point", "--format", "json"});
-  EXPECT_NO_THROW((void)json::parse(parsed.out));
+  EXPECT_TRUE(json::accept(parsed.out));
 }
 
 TEST(Assets, InfoListsWhatThereIs) {
