@@ -7,7 +7,7 @@
 
 #include "modules/modules.h"
 
-namespace radivox::oracle {
+namespace radivox::oracles {
 
 namespace {
 
@@ -95,4 +95,4 @@ std::string sharedFolder() {
   return std::filesystem::exists(folder + "/scenes") ? folder : std::string();
 }
 
-}  // namespace radivox::oracle
+}  // namespace radivox::oracles

@@ -10,7 +10,7 @@
 #include "engine/image/image.h"
 #include "engine/scene/gpu_scene.h"
 
-namespace radivox::oracle {
+namespace radivox::oracles {
 
 struct PipelineOptions {
   std::string graph = "clustered_voxel";                      ///< samples/graphs/NAME.json
@@ -61,4 +61,4 @@ class Pipeline {
 /// ../shared or $RADIVOX_SHARED; empty where it is not there.
 std::string sharedFolder();
 
-}  // namespace radivox::oracle
+}  // namespace radivox::oracles

@@ -3,7 +3,7 @@
 #include "engine/error.h"
 #include "tests/oracles/pipeline.h"
 
-namespace radivox::oracle {
+namespace radivox::oracles {
 
 namespace {
 
@@ -46,4 +46,4 @@ Difference compareToTruth(const image::Image& reference, const image::Image& tes
   return {image::psnr(r, t), image::meanOf(t) / image::meanOf(r)};
 }
 
-}  // namespace radivox::oracle
+}  // namespace radivox::oracles

@@ -5,7 +5,7 @@
 
 #include "engine/image/image.h"
 
-namespace radivox::oracle {
+namespace radivox::oracles {
 
 struct Truth {
   image::Image color, direct, indirect, albedo;  ///< mean of both files, weighted by their samples; E in W/m²
@@ -22,4 +22,4 @@ struct Difference {
 /// Pixels of albedo 0 (sky, emitters) count as 0 in both.
 Difference compareToTruth(const image::Image& reference, const image::Image& test, const image::Image& albedo);
 
-}  // namespace radivox::oracle
+}  // namespace radivox::oracles

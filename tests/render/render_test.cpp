@@ -12,8 +12,10 @@
 namespace radivox {
 namespace {
 
-using oracle::Pipeline;
-using oracle::PipelineOptions;
+using oracles::Pipeline;
+using oracles::PipelineOptions;
+
+class Render : public oracles::GpuTest {};
 
 PipelineOptions small(uint32_t resolution) {
   PipelineOptions options;
@@ -25,8 +27,8 @@ const char* const kSceneNodes[] = {"voxelize", "index", "faces", "surface", "clu
 const char* const kLightNodes[] = {"shadow_map", "inject", "bounce"};
 const char* const kViewNodes[] = {"gbuffer", "direct", "mark", "gather", "filter", "shade"};
 
-TEST(Render, SecondFrameRunsNothingButEveryFrameNodes) {
-  Pipeline p(oracle::testDevice(), scene::makeBuiltin("cornell_point"), small(24));
+TEST_F(Render, SecondFrameRunsNothingButEveryFrameNodes) {
+  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), small(24));
   p.run();
   const auto before = p.executor->stats();
   p.run();
@@ -37,9 +39,9 @@ TEST(Render, SecondFrameRunsNothingButEveryFrameNodes) {
   }
 }
 
-TEST(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
+TEST_F(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
-  Pipeline p(oracle::testDevice(), s, small(24));
+  Pipeline p(oracles::sharedDevice(), s, small(24));
   p.run();
   const double first = p.figure("gather", "gathered_faces");
   EXPECT_GT(first, 0);
@@ -61,9 +63,9 @@ TEST(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
   EXPECT_LT(second, 0.5 * first);
 }
 
-TEST(Render, LightMoveTracesNothingAgain) {
+TEST_F(Render, LightMoveTracesNothingAgain) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
-  Pipeline p(oracle::testDevice(), s, small(24));
+  Pipeline p(oracles::sharedDevice(), s, small(24));
   p.run();
   const image::Image before = p.picture("composite.color");
   for (auto& light : s.lights) light.position.x += 0.1f;
@@ -76,17 +78,17 @@ TEST(Render, LightMoveTracesNothingAgain) {
   EXPECT_EQ(p.figure("gather", "gathered_faces"), p.figure("mark", "needed_faces"));
   EXPECT_NE(before.data, p.picture("composite.color").data);
   // What a light move leaves equals what a fresh start gives, bit for bit.
-  Pipeline fresh(oracle::testDevice(), s, small(24));
+  Pipeline fresh(oracles::sharedDevice(), s, small(24));
   fresh.run();
   EXPECT_EQ(fresh.picture("composite.color").data, p.picture("composite.color").data);
 }
 
-TEST(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
+TEST_F(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
   PipelineOptions lazy = small(24), all = small(24);
   lazy.outputs = all.outputs = {"composite.color", "gather.irradiance", "gather.valid"};
   all.settings.push_back({"gather.lazy", "off"});
-  Pipeline a(oracle::testDevice(), scene::makeBuiltin("cornell_point"), lazy);
-  Pipeline b(oracle::testDevice(), scene::makeBuiltin("cornell_point"), all);
+  Pipeline a(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), lazy);
+  Pipeline b(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), all);
   a.run();
   b.run();
   const auto valid = a.buffer<uint32_t>("gather.valid");
@@ -99,15 +101,15 @@ TEST(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
   EXPECT_EQ(a.picture("composite.color").data, b.picture("composite.color").data);
 }
 
-TEST(Render, SameBitsTwice) {
+TEST_F(Render, SameBitsTwice) {
   for (const char* name : {"cornell", "two_rooms"}) {
     PipelineOptions options = small(20);
     options.outputs = {"composite.color",    "surface.faces",     "cluster.labels",         "visibility.row_start",
                        "transfer.row_start", "transfer.sky",      "inject.face_irradiance", "bounce.face_radiosity",
                        "gather.irradiance",  "filter.irradiance", "voxelize.occupancy",     "index.voxels",
                        "members.members"};
-    Pipeline a(oracle::testDevice(), scene::makeBuiltin(name), options);
-    Pipeline b(oracle::testDevice(), scene::makeBuiltin(name), options);
+    Pipeline a(oracles::sharedDevice(), scene::makeBuiltin(name), options);
+    Pipeline b(oracles::sharedDevice(), scene::makeBuiltin(name), options);
     a.run();
     b.run();
     for (const std::string& output : options.outputs) {
@@ -118,20 +120,21 @@ TEST(Render, SameBitsTwice) {
       const auto x = a.executor->findGrown(grown), y = b.executor->findGrown(grown);
       ASSERT_EQ(x.size(), y.size());
       for (size_t i = 0; i < x.size(); ++i)
-        EXPECT_EQ(gpu::download(oracle::testDevice(), *x[i]), gpu::download(oracle::testDevice(), *y[i])) << name << " " << grown << i;
+        EXPECT_EQ(gpu::download(oracles::sharedDevice(), *x[i]), gpu::download(oracles::sharedDevice(), *y[i]))
+            << name << " " << grown << i;
     }
     EXPECT_EQ(a.picture("composite.color").data, b.picture("composite.color").data) << name;
   }
 }
 
 // Every wall of a closed box emits πL_e = 1 − ρ and reflects ρ, so E = 1 everywhere inside: ρ of it has been reflected before.
-TEST(Render, FurnaceIsExactAtEveryFace) {
+TEST_F(Render, FurnaceIsExactAtEveryFace) {
   for (const double albedo : {0.0, 0.5, 0.9, 0.99}) {
     PipelineOptions options = small(16);
     options.settings.push_back({"gather.lazy", "off"});
     options.settings.push_back({"bounce.residual", "1e-7"});
     options.outputs = {"composite.color", "gather.irradiance", "bounce.face_radiosity", "surface.faces", "index.voxels", "voxelize.grid"};
-    Pipeline p(oracle::testDevice(), scene::makeBuiltin("furnace", {{"albedo", std::to_string(albedo)}}), options);
+    Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("furnace", {{"albedo", std::to_string(albedo)}}), options);
     p.run();
     const auto grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
     const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
@@ -157,7 +160,7 @@ TEST(Render, FurnaceIsExactAtEveryFace) {
   }
 }
 
-TEST(Render, SunOnAPlaneInjectsItsCosine) {
+TEST_F(Render, SunOnAPlaneInjectsItsCosine) {
   scene::Scene s = scene::makeBuiltin("plane");
   s.lights.clear();
   scene::PunctualLight sun;
@@ -167,7 +170,7 @@ TEST(Render, SunOnAPlaneInjectsItsCosine) {
   s.lights.push_back(sun);
   PipelineOptions options = small(32);
   options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "voxelize.grid"};
-  Pipeline p(oracle::testDevice(), s, options);
+  Pipeline p(oracles::sharedDevice(), s, options);
   p.run();
   const auto grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
   const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
@@ -188,7 +191,7 @@ TEST(Render, SunOnAPlaneInjectsItsCosine) {
   EXPECT_EQ(p.figure("inject", "lost_texels"), 0.0);
 }
 
-TEST(Render, PointLightInABoxLosesNoFlux) {
+TEST_F(Render, PointLightInABoxLosesNoFlux) {
   scene::Scene s = scene::makeBuiltin("box");
   s.lights.clear();
   scene::PunctualLight lamp;
@@ -200,7 +203,7 @@ TEST(Render, PointLightInABoxLosesNoFlux) {
   for (const uint32_t resolution : {16u, 41u}) {
     PipelineOptions options = small(resolution);
     options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "voxelize.grid"};
-    Pipeline p(oracle::testDevice(), s, options);
+    Pipeline p(oracles::sharedDevice(), s, options);
     p.run();
     const auto grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
     const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
@@ -212,12 +215,12 @@ TEST(Render, PointLightInABoxLosesNoFlux) {
 }
 
 // Light from 1e9 down to 1e-6 W/sr: fixed-point sums follow the lights' range.
-TEST(Render, IrradianceScalesWithTheLight) {
+TEST_F(Render, IrradianceScalesWithTheLight) {
   std::vector<float> first;
   for (const float scale : {1.f, 1e9f, 1e-6f}) {
     scene::Scene s = scene::makeBuiltin("cornell_point");
     for (auto& light : s.lights) light.intensity *= scale;
-    Pipeline p(oracle::testDevice(), s, small(16));
+    Pipeline p(oracles::sharedDevice(), s, small(16));
     p.run();
     const image::Image picture = p.picture("composite.color");
     if (first.empty()) first = picture.data;
@@ -228,13 +231,13 @@ TEST(Render, IrradianceScalesWithTheLight) {
   }
 }
 
-TEST(Render, ThinWallKeepsItsDarkSideDark) {
+TEST_F(Render, ThinWallKeepsItsDarkSideDark) {
   PipelineOptions options = small(32);
   options.settings.push_back({"gather.lazy", "off"});
   options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "index.voxels", "voxelize.grid"};
   const scene::Scene s = scene::makeBuiltin("thin_wall");
   ASSERT_EQ(s.lights.size(), 1u);
-  Pipeline p(oracle::testDevice(), s, options);
+  Pipeline p(oracles::sharedDevice(), s, options);
   p.run();
   const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
   const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance");
@@ -250,32 +253,30 @@ TEST(Render, ThinWallKeepsItsDarkSideDark) {
   EXPECT_EQ(dark, 0);
 }
 
-TEST(Render, NoLightIsBlackAndEmptyIsSky) {
+TEST_F(Render, NoLightIsBlackAndEmptyIsSky) {
   scene::Scene dark = scene::makeBuiltin("cornell_point");
   dark.lights.clear();
-  Pipeline p(oracle::testDevice(), dark, small(16));
+  Pipeline p(oracles::sharedDevice(), dark, small(16));
   p.run();
   for (float v : p.picture("composite.color").data) ASSERT_EQ(v, 0.f);
 
   scene::Scene empty = scene::makeBuiltin("empty");
   empty.skyRadiance = glm::vec3(0.25f, 0.5f, 1.f);
-  Pipeline q(oracle::testDevice(), empty, small(16));
+  Pipeline q(oracles::sharedDevice(), empty, small(16));
   q.run();
   const image::Image sky = q.picture("composite.color");
   EXPECT_EQ(sky.at(5, 5, 0), 0.25f);
   EXPECT_EQ(sky.at(5, 5, 2), 1.f);
 }
 
-TEST(Render, ZeroBouncesLeaveTheMethodOut) {
+TEST_F(Render, ZeroBouncesLeaveTheMethodOut) {
   PipelineOptions options = small(16);
   options.bounces = 0;
-  Pipeline p(oracle::testDevice(), scene::makeBuiltin("cornell_point"), options);
+  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), options);
   p.run();
   EXPECT_EQ(p.executor->findBuffer("voxelize.occupancy"), nullptr);
   EXPECT_GT(image::meanOf(p.picture("composite.color")), 0.0);
 }
-
-TEST(Render, ValidationIsSilent) { EXPECT_EQ(oracle::testDevice().validationMessageCount(), 0u); }
 
 }  // namespace
 }  // namespace radivox

@@ -19,7 +19,8 @@ Inject::Inject()
 
 void Inject::declare(graph::Declaration& d) {
   lit_ = d.traits.punctualLightCount() + d.traits.emissiveTriangleCount > 0;
-  for (const char* name : {"scene.info", "scene.lights", "scene.shadow_views", "scene.vertices", "scene.indices"})
+  for (const char* name : {"scene.info", "scene.lights", "scene.shadow_views", "scene.vertices", "scene.indices",
+                           "scene.triangle_materials", "scene.materials"})
     d.read(name, "lights and geometry");
   d.read("shadow_depth", "depth of the nearest surface from each light, reversed z").optional = true;
   d.read("shadow_triangle", "id + 1 of the nearest triangle from each light, 0: none").optional = true;
@@ -51,7 +52,7 @@ void Inject::prepare(graph::PrepareContext& context) {
   }
   if (method_ == Method::Splat) {
     splat_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
-                                                            .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                            .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                             .pushConstantBytes = 12});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
@@ -94,7 +95,8 @@ void Inject::record(graph::RecordContext& context) {
     commands.bind(splat_, {context.buffer("scene.info"), context.buffer("scene.lights"), context.buffer("scene.shadow_views"),
                            context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("shadow_triangle"),
                            context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"),
-                           context.buffer("first"), flux, viewTable, status});
+                           context.buffer("first"), flux, viewTable, status, context.buffer("scene.triangle_materials"),
+                           context.buffer("scene.materials")});
     // First one lane: the table. Then every texel.
     push.faceCount = 0;
     commands.push(push);

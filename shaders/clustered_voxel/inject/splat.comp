@@ -24,6 +24,8 @@ layout(set = 0, binding = 5) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 11, scalar) buffer FluxBuffer { uint flux[]; };        // 6 words a face: RGB × (low, high)
 layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; };  // [0] exponent as int; [1 + v] first texel of view v
 layout(set = 0, binding = 13, scalar) buffer StatusBuffer { uint status[]; };
+layout(set = 0, binding = 14, scalar) readonly buffer TriangleMaterialBuffer { uint triangleMaterials[]; };
+layout(set = 0, binding = 15, scalar) readonly buffer MaterialBuffer { Material materials[]; };
 layout(push_constant, scalar) uniform Push {
   uint viewCount;
   uint lightCount;
@@ -120,7 +122,10 @@ void main() {
   if (slope == 0.0) return;
   float t = dot(n, a - origin) / slope;
   vec3 p = origin + t * d;
-  if (slope > 0.0) n = -n;  // the side that the light reaches
+  if (slope > 0.0) {  // the side that the light reaches
+    if (grid.singleSided != 0u && (materials[triangleMaterials[triangle]].flags & kMaterialDoubleSided) == 0u) return;
+    n = -n;
+  }
   vec3 power = shadowTexelFlux(view, light, d, p);
   if (!(max(power.x, max(power.y, power.z)) > 0.0)) return;
 
