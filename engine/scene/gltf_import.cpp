@@ -249,6 +249,32 @@ bool primitivesLackMaterial(const Document& document) {
   return false;
 }
 
+/// Room for all instances. Throws OutOfMemory when 32-bit indices cannot number them, before anything is multiplied.
+Assembly reserveFor(const Document& document, const std::vector<PlacedNode>& nodes, gltf::MeshReader& meshes) {
+  uint64_t vertexTotal = 0, indexTotal = 0;
+  for (const PlacedNode& placed : nodes) {
+    const Value node = document.entry("nodes", placed.node);
+    const auto mesh = node.indexOr("mesh", document.count("meshes"), "meshes");
+    if (!mesh) continue;
+    for (const gltf::Primitive& primitive : meshes.mesh(*mesh)) {
+      if (primitive.indices.empty()) continue;
+      vertexTotal += primitive.normals.empty() ? primitive.indices.size() : primitive.positions.size();
+      indexTotal += primitive.indices.size();
+    }
+    if (vertexTotal > 0xffffffffull || indexTotal > 0xffffffffull) {
+      throw Error(ErrorCode::OutOfMemory, document.path() + ": " + node.place() + ": with this instance the scene has " +
+                                              std::to_string(indexTotal / 3) +
+                                              " triangles, more than 32-bit indices hold; simplify it or remove instances");
+    }
+  }
+  Assembly assembly;
+  assembly.positions.reserve(vertexTotal);
+  assembly.vertices.reserve(vertexTotal);
+  assembly.indices.reserve(indexTotal);
+  assembly.triangleMaterials.reserve(indexTotal / 3);
+  return assembly;
+}
+
 Scene importChecked(const std::string& path) {
   const Document document(path);
   Scene scene;
@@ -264,22 +290,14 @@ Scene importChecked(const std::string& path) {
   if (document.count("skins") > 0) warnings.add("skins are left out, skinned meshes keep their bind pose");
   if (document.count("animations") > 0) warnings.add("animations are left out");
 
-  Assembly assembly;
+  const std::vector<PlacedNode> placedNodes = placeNodes(document, gltfScene, warnings);
+  Assembly assembly = reserveFor(document, placedNodes, meshes);
   std::vector<glm::dvec3> lightPositions, cameraPositions;
-  uint64_t vertexTotal = 0, indexTotal = 0;
-  for (const PlacedNode& placedNode : placeNodes(document, gltfScene, warnings)) {
+  for (const PlacedNode& placedNode : placedNodes) {
     const Value node = document.entry("nodes", placedNode.node);
     if (const auto mesh = node.indexOr("mesh", document.count("meshes"), "meshes")) {
-      for (const gltf::Primitive& primitive : meshes.mesh(*mesh)) {
-        vertexTotal += primitive.normals.empty() ? primitive.indices.size() : primitive.positions.size();
-        indexTotal += primitive.indices.size();
-        if (vertexTotal > 0xffffffffull || indexTotal > 0xffffffffull) {
-          throw Error(ErrorCode::OutOfMemory, path + ": " + node.place() + ": with this instance the scene has " +
-                                                  std::to_string(indexTotal / 3) +
-                                                  " triangles, more than 32-bit indices hold; simplify it or remove instances");
-        }
+      for (const gltf::Primitive& primitive : meshes.mesh(*mesh))
         gltf::appendInstance(primitive, placedNode.toWorld, node, assembly, warnings);
-      }
     }
     if (const auto extension = node.findExtension("KHR_lights_punctual")) {
       const size_t index = extension->index("light", lights ? lights->size() : 0, "lights");
