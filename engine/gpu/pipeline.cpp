@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
+#include <tuple>
 #include <utility>
 
 #include "engine/gpu/shader_reflection.h"
@@ -45,6 +47,26 @@ struct Specialization {
   std::vector<uint32_t> values;
   VkSpecializationInfo info{};
 };
+
+/// Every binding is visible to every stage, so a stage's limits hold for all bindings together.
+void checkStageLimits(const Device& device, const std::vector<BindingType>& bindings) {
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(device.physicalDevice(), &properties);
+  const VkPhysicalDeviceLimits& limits = properties.limits;
+  const std::tuple<BindingType, uint32_t, const char*> kinds[] = {
+      {BindingType::StorageBuffer, limits.maxPerStageDescriptorStorageBuffers, "storage buffers"},
+      {BindingType::UniformBuffer, limits.maxPerStageDescriptorUniformBuffers, "uniform buffers"},
+      {BindingType::StorageImage, limits.maxPerStageDescriptorStorageImages, "storage images"},
+      {BindingType::SampledImage, std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers),
+       "sampled images"}};
+  for (const auto& [type, limit, name] : kinds) {
+    const auto count = std::count(bindings.begin(), bindings.end(), type);
+    if (count > static_cast<std::ptrdiff_t>(limit)) {
+      throw Error(ErrorCode::Unsupported, std::to_string(count) + " " + name + ", but " + device.capabilities().deviceName + " allows " +
+                                              std::to_string(limit) + " in a shader");
+    }
+  }
+}
 
 VkDescriptorType descriptorType(BindingType type) {
   switch (type) {
@@ -190,6 +212,7 @@ void Pipeline::makeLayout(Device& device, uint32_t pushBytes, VkShaderStageFlags
                 std::to_string(bindings_.size()) + " bindings; at most " + std::to_string(kMaxBindings) + " are allowed");
   }
   if (pushBytes > 128) throw Error(ErrorCode::Unsupported, std::to_string(pushBytes) + " bytes of push constants; at most 128 are allowed");
+  checkStageLimits(device, bindings_);
   stages_ = stages;
   pushConstantBytes_ = pushBytes;
   std::vector<VkDescriptorSetLayoutBinding> entries;

@@ -8,7 +8,7 @@ namespace radivox::gpu {
 
 class Scan {
  public:
-  static constexpr uint32_t kBlock = 1024;  ///< items a workgroup sums (256 lanes × 4)
+  static constexpr uint32_t kBlock = 1024;  ///< items a workgroup sums
   /// `mostPieceItems` (tests) makes pieces smaller than the device's binding range asks for; it is rounded down to 32768 at least.
   explicit Scan(Device& device, uint64_t mostPieceItems = uint64_t{1} << 27);
 
@@ -49,6 +49,7 @@ class Scan {
   Pipeline reducePairs_;
   Pipeline reduceBits_;
   Pipeline scanWords_;
+  Pipeline scanWordsInPlace_;
   Pipeline scanPairs_;
   Pipeline scatterBits_;
   Pipeline writeArguments_;

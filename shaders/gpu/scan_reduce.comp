@@ -14,18 +14,20 @@ layout(push_constant, scalar) uniform Push {
 
 void main() {
   const uint block = radivoxGroupIndex();
-  if (block >= (itemCount - 1u) / (kLanes * kItemsPerLane) + 1u) return;
-  const uint first = (block * kLanes + gl_LocalInvocationIndex) * kItemsPerLane;
-  uvec2 own = uvec2(0u);
-  for (uint i = first; i < min(first + kItemsPerLane, itemCount); ++i) {
-    if (kSource == 1u) {
-      own = addWide(own, uvec2(source[2u * i], source[2u * i + 1u]));
-    } else if (kSource == 2u) {
-      own.x += bitCount(source[i] & (i + 1u == itemCount ? lastWordMask : 0xffffffffu));
-    } else {
-      own = addWide(own, uvec2(source[i], 0u));
+  if (block >= (itemCount - 1u) / kBlock + 1u) return;
+  const uint first = block * kBlock + gl_LocalInvocationIndex * kItemsPerLane;
+  const uint end = min(first + kItemsPerLane, itemCount);
+  if (kSource == 2u) {
+    uint own = 0u;  // at most 32 · 1024
+    for (uint i = first; i < end; ++i) own += bitCount(source[i] & (i + 1u == itemCount ? lastWordMask : 0xffffffffu));
+    const uint before = sumLanesBefore(own);
+    if (gl_LocalInvocationIndex == kLanes - 1u) sums[block] = uvec2(before + own, 0u);
+  } else {
+    uvec2 own = uvec2(0u);
+    for (uint i = first; i < end; ++i) {
+      own = addWide(own, kSource == 1u ? uvec2(source[2u * i], source[2u * i + 1u]) : uvec2(source[i], 0u));
     }
+    const uvec2 before = sumLanesBeforeWide(own);
+    if (gl_LocalInvocationIndex == kLanes - 1u) sums[block] = addWide(before, own);
   }
-  const uvec2 before = sumLanesBefore(own);
-  if (gl_LocalInvocationIndex == kLanes - 1u) sums[block] = addWide(before, own);
 }

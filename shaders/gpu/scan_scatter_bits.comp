@@ -18,22 +18,19 @@ layout(push_constant, scalar) uniform Push {
   uint isTop;         // a single block, no offset
 };
 
+uint readWord(uint i) { return bits[i] & (i + 1u == wordCount ? lastWordMask : 0xffffffffu); }
+
 void main() {
   const uint block = radivoxGroupIndex();
-  if (block >= (wordCount - 1u) / (kLanes * kItemsPerLane) + 1u) return;
-  const uint first = (block * kLanes + gl_LocalInvocationIndex) * kItemsPerLane;
-  uint words[kItemsPerLane];
+  if (block >= (wordCount - 1u) / kBlock + 1u) return;
+  const uint first = block * kBlock + gl_LocalInvocationIndex * kItemsPerLane;
+  const uint end = min(first + kItemsPerLane, wordCount);
   uint own = 0u;
-  for (uint k = 0u; k < kItemsPerLane; ++k) {
-    const uint i = first + k;
-    words[k] = 0u;
-    if (i < wordCount) words[k] = bits[i] & (i + 1u == wordCount ? lastWordMask : 0xffffffffu);
-    own += bitCount(words[k]);
-  }
-  uint at = sumLanesBefore(uvec2(own, 0u)).x + (isTop == 0u ? offsets[block].x : 0u);
-  for (uint k = 0u; k < kItemsPerLane; ++k) {
-    for (uint word = words[k]; word != 0u; word &= word - 1u) {
-      if (at < capacity) indices.index[at] = (firstWord + first + k) * 32u + uint(findLSB(word));
+  for (uint i = first; i < end; ++i) own += bitCount(readWord(i));
+  uint at = sumLanesBefore(own) + (isTop == 0u ? offsets[block].x : 0u);
+  for (uint i = first; i < end; ++i) {
+    for (uint word = readWord(i); word != 0u; word &= word - 1u) {
+      if (at < capacity) indices.index[at] = (firstWord + i) * 32u + uint(findLSB(word));
       ++at;
     }
   }

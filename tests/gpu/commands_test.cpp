@@ -242,6 +242,16 @@ TEST_F(PipelineTest, ErrorsNameTheShader) {
                                                                  .bindings = std::vector(33, BindingType::StorageBuffer)});
               }),
               ErrorCode::Unsupported, "32");
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(device().physicalDevice(), &properties);
+  const uint32_t uniforms = properties.limits.maxPerStageDescriptorUniformBuffers + 1;
+  if (uniforms <= gpu::kMaxBindings) {
+    expectError(catchError([&] {
+                  gpu::Pipeline(device(), gpu::ComputePipelineInfo{.shader = "gpu/test_items.comp",
+                                                                   .bindings = std::vector(uniforms, BindingType::UniformBuffer)});
+                }),
+                ErrorCode::Unsupported, "uniform buffers");
+  }
 }
 
 TEST_F(PipelineTest, TakesCodeFromElsewhere) {
