@@ -362,7 +362,7 @@ TEST_F(VoxelizeTest, AlphaMaskTakesItsShareOfArea) {
 }
 
 TEST_F(VoxelizeTest, SponzaKeepsItsAreaAndTheBound) {
-  const std::string shared = oracle::sharedFolder();
+  const std::string shared = oracles::sharedFolder();
   if (shared.empty()) GTEST_SKIP() << "no shared scenes";
   const scene::Scene scene = scene::loadScene(shared + "/scenes/sponza.glb");
   const Soup soup = oracle::soupOf(scene);
