@@ -183,6 +183,33 @@ TEST_F(HostPacedTest, NoStepsIsLegal) {
   EXPECT_EQ(h.runCount("node"), 1u);
 }
 
+TEST_F(HostPacedTest, AnInterruptedModifyStartsFromTheVersionBefore) {
+  //  fill 100 ──▶ modify: += 1 in each of three steps
+  NodeHarness h(device());
+  addFill(h.graph(), "fill");
+  const auto add = std::make_shared<AddPipeline>();
+  uint32_t stepsDone = 0;
+  FakeNode& node = addFake(h.graph(), "modify", [](Declaration& d) {
+    d.modify("data", "words");
+    d.hostPaced();
+  });
+  node.onPrepare = [add](graph::PrepareContext& c) { add->prepare(c.device()); };
+  node.onStepCount = [](RecordContext&) { return 3u; };
+  node.onRecord = [add](RecordContext& c) { add->dispatch(c.commands(), c.buffer("data"), c.buffer("data"), 4, 1); };
+  node.onStepDone = [&stepsDone](RecordContext&) { ++stepsDone; };
+  h.connect("fill.out", "modify.data");
+  h.output("modify.data");
+  h.set("fill.value", "100");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("modify.data"), repeat(4, 103));
+  h.set("modify.value", "2");
+  stepsDone = 0;
+  EXPECT_THROW(h.executor().run({}, [&] { return stepsDone == 2; }), Error);
+  EXPECT_EQ(stepsDone, 2u);
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("modify.data"), repeat(4, 103));
+}
+
 TEST_F(HostPacedTest, InterruptionStopsBetweenStepsAndTheNextRunStartsAnew) {
   NodeHarness h(device());
   addFill(h.graph(), "fill");

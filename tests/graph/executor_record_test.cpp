@@ -130,6 +130,28 @@ TEST_F(RecordTest, SeesWhatTheHostWroteInTheSameCommandBuffer) {
   EXPECT_EQ(result(0), 71u);
 }
 
+TEST_F(RecordTest, BarriersToAndFromTheHost) {
+  // One dispatch and nothing else, so that no other barrier covers for those at both ends: the host writes the import just before and
+  // reads the output just after, both by transfer.
+  graph::Graph g;
+  addAdd(g, "add");
+  g.connect("host.camera", "add.in");
+  g.output("add.out");
+  graph::Executor executor(device(), g, input_.compile(g), input_.traits, input_.request, {});
+  setCamera(1);
+  executor.importBuffer("host.camera", camera_, 1);
+  executor.run();
+  executor.importBuffer("host.camera", camera_, 2);
+  device().submitAndWait([&](VkCommandBuffer commands) {
+    vkCmdFillBuffer(commands, camera_.handle(), 0, VK_WHOLE_SIZE, 70);
+    executor.record(commands);
+    const VkBufferCopy region{0, 0, 16};
+    vkCmdCopyBuffer(commands, executor.findBuffer("add.out")->handle(), result_.handle(), 1, &region);
+  });
+  executor.frameCompleted();
+  EXPECT_EQ(result(3), 71u);
+}
+
 TEST_F(RecordTest, SeveralFramesUnderWay) {
   // Three frames in one submission, each with another parameter: nothing waits between them but barriers.
   setCamera(100);
@@ -174,6 +196,53 @@ TEST_F(RecordTest, RefusedWhileNotReady) {
   EXPECT_THROW(executor_->frameCompleted(), Error);
   executor_->run();
   EXPECT_EQ(seen_, (std::vector<uint32_t>{6}));
+}
+
+TEST_F(RecordTest, NodesOfEveryFrameAreInEachRecording) {
+  graph::Graph g;
+  FakeNode& clock = addFake(g, "clock", [](Declaration& d) {
+    d.write("out", Shape::buffer(4, 4), "words", graph::UseTransfer);
+    d.runEveryFrame();
+  });
+  uint32_t frame = 0;
+  clock.onRecord = [&frame](RecordContext& c) { c.commands().fill(c.buffer("out"), ++frame); };
+  g.output("clock.out");
+  graph::Executor executor(device(), g, input_.compile(g), input_.traits, input_.request, {});
+  executor.run();
+  for (uint32_t i = 2; i < 5; ++i) {
+    device().submitAndWait([&](VkCommandBuffer commands) { executor.record(commands); });
+    executor.frameCompleted();
+    EXPECT_EQ(gpu::downloadAs<uint32_t>(device(), *executor.findBuffer("clock.out"), 4), repeat(4, i));
+  }
+}
+
+TEST_F(RecordTest, NotReadyWhileItsScratchIsGivenBack) {
+  // `view` ran beside a preparation, whose scratch memory went with it; the first frame of its own is a run(), then recording may begin.
+  graph::Graph g;
+  addCounter(g, "counter", "items");
+  FakeNode& view = addFake(g, "view", [](Declaration& d) {
+    d.scratch("temporary", Shape::buffer(4, 64), "words", graph::UseTransfer);
+    d.write("out", Shape::buffer(4, 4), "words", graph::UseTransfer);
+  });
+  view.onRecord = [&view](RecordContext& c) {
+    c.commands().fill(c.buffer("temporary"), view.value);
+    c.commands().barrier();
+    c.commands().copy(c.buffer("temporary"), c.buffer("out"), 16);
+  };
+  addFill(g, "shaped", Extent::of("items"));
+  g.output("view.out");
+  g.output("shaped.out");
+  graph::Executor executor(device(), g, input_.compile(g), input_.traits, input_.request, {});
+  executor.run();
+  EXPECT_TRUE(executor.isReadyToRecord()) << "nothing is stale";
+  g.set("view.value", "2");
+  EXPECT_FALSE(executor.isReadyToRecord());
+  executor.run();
+  g.set("view.value", "3");
+  EXPECT_TRUE(executor.isReadyToRecord());
+  device().submitAndWait([&](VkCommandBuffer commands) { executor.record(commands); });
+  executor.frameCompleted();
+  EXPECT_EQ(gpu::downloadAs<uint32_t>(device(), *executor.findBuffer("view.out"), 4), repeat(4, 3));
 }
 
 TEST_F(RecordTest, HostPacedNodesAreNeverRecorded) {
