@@ -1,0 +1,2 @@
+// A library that is no module: it has no entry point.
+int radivoxTestEmpty() { return 0; }
