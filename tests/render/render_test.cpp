@@ -19,7 +19,9 @@ class Render : public oracles::GpuTest {};
 
 PipelineOptions small(uint32_t resolution) {
   PipelineOptions options;
-  options.settings = {{"voxelize.resolution", std::to_string(resolution)}};
+  options.settings = {{"voxelize.resolution", std::to_string(resolution)}, {"visibility.rays", "64"}};
+  // Shadow maps as small as the pictures are: the tests run on CPUs.
+  options.lights = {.shadowResolution = 512, .pointShadowResolution = 128, .emitterSamples = 8, .emitterShadowResolution = 64};
   return options;
 }
 
@@ -28,7 +30,7 @@ const char* const kLightNodes[] = {"shadow_map", "inject", "bounce"};
 const char* const kViewNodes[] = {"gbuffer", "direct", "mark", "gather", "filter", "shade"};
 
 TEST_F(Render, SecondFrameRunsNothingButEveryFrameNodes) {
-  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), small(24));
+  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), small(20));
   p.run();
   const auto before = p.executor->stats();
   p.run();
@@ -41,7 +43,7 @@ TEST_F(Render, SecondFrameRunsNothingButEveryFrameNodes) {
 
 TEST_F(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
-  Pipeline p(oracles::sharedDevice(), s, small(24));
+  Pipeline p(oracles::sharedDevice(), s, small(20));
   p.run();
   const double first = p.figure("gather", "gathered_faces");
   EXPECT_GT(first, 0);
@@ -65,7 +67,7 @@ TEST_F(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
 
 TEST_F(Render, LightMoveTracesNothingAgain) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
-  Pipeline p(oracles::sharedDevice(), s, small(24));
+  Pipeline p(oracles::sharedDevice(), s, small(20));
   p.run();
   const image::Image before = p.picture("composite.color");
   for (auto& light : s.lights) light.position.x += 0.1f;
@@ -78,13 +80,13 @@ TEST_F(Render, LightMoveTracesNothingAgain) {
   EXPECT_EQ(p.figure("gather", "gathered_faces"), p.figure("mark", "needed_faces"));
   EXPECT_NE(before.data, p.picture("composite.color").data);
   // What a light move leaves equals what a fresh start gives, bit for bit.
-  Pipeline fresh(oracles::sharedDevice(), s, small(24));
+  Pipeline fresh(oracles::sharedDevice(), s, small(20));
   fresh.run();
   EXPECT_EQ(fresh.picture("composite.color").data, p.picture("composite.color").data);
 }
 
 TEST_F(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
-  PipelineOptions lazy = small(24), all = small(24);
+  PipelineOptions lazy = small(20), all = small(20);
   lazy.outputs = all.outputs = {"composite.color", "gather.irradiance", "gather.valid"};
   all.settings.push_back({"gather.lazy", "off"});
   Pipeline a(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), lazy);
@@ -97,7 +99,9 @@ TEST_F(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
   EXPECT_LT(a.figure("gather", "gathered_faces"), b.figure("gather", "gathered_faces"));
   EXPECT_EQ(b.figure("gather", "gathered_faces"), static_cast<double>(b.count("faces")));
   for (size_t s = 0; s < a.count("faces"); ++s)
-    if ((valid[s / 32] >> (s % 32)) & 1u) ASSERT_EQ(some[s], every[s]) << "face " << s;
+    if ((valid[s / 32] >> (s % 32)) & 1u) {
+      ASSERT_EQ(some[s], every[s]) << "face " << s;
+    }
   EXPECT_EQ(a.picture("composite.color").data, b.picture("composite.color").data);
 }
 
@@ -130,7 +134,7 @@ TEST_F(Render, SameBitsTwice) {
 // Every wall of a closed box emits πL_e = 1 − ρ and reflects ρ, so E = 1 everywhere inside: ρ of it has been reflected before.
 TEST_F(Render, FurnaceIsExactAtEveryFace) {
   for (const double albedo : {0.0, 0.5, 0.9, 0.99}) {
-    PipelineOptions options = small(16);
+    PipelineOptions options = small(12);
     options.settings.push_back({"gather.lazy", "off"});
     options.settings.push_back({"bounce.residual", "1e-7"});
     options.outputs = {"composite.color", "gather.irradiance", "bounce.face_radiosity", "surface.faces", "index.voxels", "voxelize.grid"};
@@ -153,9 +157,10 @@ TEST_F(Render, FurnaceIsExactAtEveryFace) {
       ++inside;
       const double error = std::abs(double{irradiance[s].x} - expected);
       worst = std::max(worst, error);
-      wrong += error > 1e-5;
+      // Towards albedo 1 the answer is 1 / (1 − ρ) times as sensitive as the 24 bits of a float.
+      wrong += error > std::max(1e-5, 2e-7 / (1.0 - albedo));
     }
-    EXPECT_GT(inside, 6u * 13 * 13);
+    EXPECT_GT(inside, 6u * 9 * 9);
     EXPECT_EQ(wrong, 0u) << "albedo " << albedo << ", of " << inside << " faces, worst " << worst;
   }
 }
@@ -169,6 +174,7 @@ TEST_F(Render, SunOnAPlaneInjectsItsCosine) {
   sun.intensity = glm::vec3(10.f, 5.f, 1.f);
   s.lights.push_back(sun);
   PipelineOptions options = small(32);
+  options.lights.shadowResolution = 2048;
   options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "voxelize.grid"};
   Pipeline p(oracles::sharedDevice(), s, options);
   p.run();
@@ -179,7 +185,9 @@ TEST_F(Render, SunOnAPlaneInjectsItsCosine) {
   double flux = 0, area = 0, worst = 0;
   for (size_t i = 0; i < faces.size(); ++i) {
     const uint32_t f = faces[i].key & 7u;
-    if (f == 3u) EXPECT_EQ(irradiance[i].x, 0.f) << "light on the underside";
+    if (f == 3u) {
+      EXPECT_EQ(irradiance[i].x, 0.f) << "light on the underside";
+    }
     if (f != 2u) continue;
     flux += double{faces[i].area} * grid.h * grid.h * irradiance[i].x;
     area += double{faces[i].area} * grid.h * grid.h;
@@ -200,8 +208,9 @@ TEST_F(Render, PointLightInABoxLosesNoFlux) {
   lamp.position = glm::mix(traits.boundsMin, traits.boundsMax, glm::vec3(0.4f, 0.55f, 0.7f));
   lamp.intensity = glm::vec3(3.f);
   s.lights.push_back(lamp);
-  for (const uint32_t resolution : {16u, 41u}) {
+  for (const uint32_t resolution : {16u, 27u}) {
     PipelineOptions options = small(resolution);
+    options.lights.pointShadowResolution = 512;
     options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance", "voxelize.grid"};
     Pipeline p(oracles::sharedDevice(), s, options);
     p.run();

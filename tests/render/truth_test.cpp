@@ -27,9 +27,9 @@ Quality measure(const std::string& sceneName, const oracles::Truth& truth, Pipel
   Pipeline p(oracles::sharedDevice(), scene::loadScene(oracles::sharedFolder() + "/scenes/" + sceneName), options);
   p.run();
   Quality q;
-  q.full = compareToTruth(truth.color, p.picture("composite.color"), truth.albedo);
-  q.direct = compareToTruth(truth.direct, p.picture("direct.irradiance"), truth.albedo);
-  q.indirect = compareToTruth(truth.indirect, p.picture("shade.irradiance"), truth.albedo);
+  q.full = oracles::compareToTruth(truth.color, p.picture("composite.color"), truth.albedo);
+  q.direct = oracles::compareToTruth(truth.direct, p.picture("direct.irradiance"), truth.albedo);
+  q.indirect = oracles::compareToTruth(truth.indirect, p.picture("shade.irradiance"), truth.albedo);
   std::printf("%-18s N=%-4s full %.2f dB (bias %.3f)  direct %.2f dB (%.3f)  indirect %.2f dB (%.3f), floor %.2f dB\n", sceneName.c_str(),
               options.settings.front().second.c_str(), q.full.psnr, q.full.bias, q.direct.psnr, q.direct.bias, q.indirect.psnr,
               q.indirect.bias, truth.noiseFloorIndirect);
