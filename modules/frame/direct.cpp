@@ -13,11 +13,16 @@ constexpr uint32_t kMaxUnshadowed = 4096;
 }  // namespace
 
 Direct::Direct()
-    : table_(
-          {params::number("filter", &filter_, {0, 3}, "half width of the shadow filter, texels; 0: hard edges", params::Invalidates::Plan),
-           params::number("closed_form", &closedForm_, {0, kMaxUnshadowed},
-                          "emissive triangles up to this many are summed in closed form, above it emitter samples stand for them",
-                          params::Invalidates::Plan)}) {}
+    : table_({params::choice(
+                  "edges", &edges_, {"exact", "filtered"},
+                  "shadows of punctual lights end where triangles end (smoothed over the pixel), or where shadow texels do (filtered)",
+                  params::Invalidates::Plan),
+              params::number("filter", &filter_, {0, 3},
+                             "half width of the shadow filter, texels: emitter samples, and edges=filtered; 0: none",
+                             params::Invalidates::Plan),
+              params::number("closed_form", &closedForm_, {0, kMaxUnshadowed},
+                             "emissive triangles up to this many are summed in closed form, above it emitter samples stand for them",
+                             params::Invalidates::Plan)}) {}
 
 Direct::Emitters Direct::chooseEmitters(const scene::Traits& traits, bool hasImage) const {
   if (traits.emissiveTriangleCount == 0) return Emitters::None;
@@ -34,9 +39,10 @@ void Direct::declare(graph::Declaration& d) {
   d.read("position", "relative world m");
   d.read("normal", "unit shading normal on the viewer's side");
   d.read("triangle", "id + 1; 0: sky");
-  for (const char* name :
-       {"scene.vertices", "scene.indices", "scene.info", "scene.lights", "scene.shadow_views", "scene.emissive_triangles"})
+  for (const char* name : {"scene.vertices", "scene.indices", "scene.info", "scene.lights", "scene.shadow_views",
+                           "scene.emissive_triangles", "scene.triangle_materials", "scene.materials"})
     d.read(name, "geometry and lights");
+  d.read("view.camera", "Camera");
   d.read("shadow_depth", "reversed z of the nearest surface from each light").optional = true;
   d.read("shadow_triangle", "id + 1 of that surface; 0: none").optional = true;
   graph::Port& emitted = d.read("emitted", "irradiance from emitters, found by rays, W/m²");
@@ -69,10 +75,14 @@ void Direct::prepare(graph::PrepareContext& context) {
   constexpr auto kS = BindingType::SampledImage;
   emitters_ = chooseEmitters(context.traits(), context.has("emitted"));
   const bool shadowed = context.has("shadow_depth") && context.has("shadow_triangle");
-  pipeline_ = gpu::Pipeline(context.device(),
-                            gpu::ComputePipelineInfo{.shader = "frame/direct.comp",
-                                                     .bindings = {kI, kI, kI, kB, kB, kB, kB, kB, kB, kS, kS, kI, kI},
-                                                     .constants = {{0, filter_}, {1, shadowed}, {2, static_cast<uint32_t>(emitters_)}}});
+  pipeline_ =
+      gpu::Pipeline(context.device(), gpu::ComputePipelineInfo{.shader = "frame/direct.comp",
+                                                               .bindings = {kI, kI, kI, kB, kB, kB, kB, kB, kB, kS, kS, kI, kI, kB, kB, kB},
+                                                               .constants = {{0, filter_},
+                                                                             {1, shadowed},
+                                                                             {2, static_cast<uint32_t>(emitters_)},
+                                                                             {3, context.traits().alphaMasked},
+                                                                             {4, edges_ == Edges::Exact}}});
 }
 
 void Direct::record(graph::RecordContext& context) {
@@ -84,7 +94,8 @@ void Direct::record(graph::RecordContext& context) {
                             context.buffer("scene.indices"), context.buffer("scene.info"), context.buffer("scene.lights"),
                             context.buffer("scene.shadow_views"), context.buffer("scene.emissive_triangles"),
                             shadowed ? context.image("shadow_depth") : absent_, shadowed ? context.image("shadow_triangle") : absent_,
-                            emitters_ == Emitters::Image ? context.image("emitted") : absent_, out});
+                            emitters_ == Emitters::Image ? context.image("emitted") : absent_, out,
+                            context.buffer("scene.triangle_materials"), context.buffer("scene.materials"), context.buffer("view.camera")});
   commands.dispatch((out.info().width + 7) / 8, (out.info().height + 7) / 8);
   if (emitters_ == Emitters::Unshadowed)
     context.reportStat("emitters_unshadowed", static_cast<double>(context.traits().emissiveTriangleCount));

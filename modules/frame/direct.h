@@ -1,11 +1,13 @@
 // frame.direct — direct irradiance on screen from punctual lights and emissive triangles.
 //
-// reads   gbuffer position, normal, triangle; scene.vertices, .indices, .info, .lights, .shadow_views, .emissive_triangles;
+// reads   gbuffer position, normal, triangle; scene.vertices, .indices, .triangle_materials, .materials, .info, .lights, .shadow_views,
+//         .emissive_triangles; view.camera;
 //         shadow_depth?, shadow_triangle? = shadow_map.depth, .triangle (without them nothing is shadowed);
 //         emitted? = irradiance that emitters bring, found by rays (only where traits say emittersByRays)
 // writes  irradiance  image RGBA32F  E_direct at the pixel's surface, W/m²; a: 1 surface, 0 sky. Not the sky's light: composite adds that
 // runs    when the view, the lights or the shadow maps change
-// cost    pixels × (lights × (2·filter)² texels + emissive triangles up to `closed_form`). Left out without lights and emitters.
+// cost    pixels × (punctual lights × 4 texels + emitter samples × (2·filter)² texels + emissive triangles up to `closed_form`); 36 texels a light
+//         in pixels at shadow edges. Left out without lights and emitters.
 // source  KHR_lights_punctual; Lambert's boundary formula (shaders/frame/polygon.glsl); shadow.glsl for visibility
 //
 // Light counts only where it meets the viewer's side, by shading and by geometric normal.
@@ -35,6 +37,8 @@ class Direct : public graph::Node {
   enum class Emitters : uint32_t { None, Shadowed, Samples, Unshadowed, Image };
   Emitters chooseEmitters(const scene::Traits& traits, bool hasImage) const;
 
+  enum class Edges : uint32_t { Exact, Filtered };
+  Edges edges_ = Edges::Exact;
   uint32_t filter_ = 1;
   uint32_t closedForm_ = 256;
   params::Table table_;

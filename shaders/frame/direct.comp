@@ -7,6 +7,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint kFilter = 1u;        // texels; half width of the shadow filter
 layout(constant_id = 1) const bool kShadowed = true;    // shadow maps are there
+layout(constant_id = 3) const bool kMasked = false;     // some material has an alpha mask
+layout(constant_id = 4) const bool kExactEdges = true;  // shadows of punctual lights end where triangles end, not where texels do
 // How emitters light: not at all; closed form × visible share of the samples; samples alone; closed form unshadowed; an image of others.
 layout(constant_id = 2) const uint kEmitters = 0u;
 const uint kEmittersNone = 0u, kEmittersShadowed = 1u, kEmittersSamples = 2u, kEmittersUnshadowed = 3u, kEmittersImage = 4u;
@@ -24,6 +26,9 @@ layout(set = 0, binding = 9) uniform sampler2DArray shadowDepth;
 layout(set = 0, binding = 10) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 11, rgba32f) readonly uniform image2D emittedImage;
 layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D irradianceImage;
+layout(set = 0, binding = 13, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
+layout(set = 0, binding = 14, scalar) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 15, scalar) readonly buffer View { Camera camera; };
 
 #include "frame/polygon.glsl"
 #include "frame/shadow.glsl"
@@ -53,7 +58,8 @@ void main() {
     return;
   }
   own -= 1u;
-  vec3 p = imageLoad(positionImage, pixel).xyz;
+  vec4 position = imageLoad(positionImage, pixel);
+  vec3 p = position.xyz;
   vec3 n = imageLoad(normalImage, pixel).xyz;
   vec3 p0 = vertices[indices[3u * own]].position;
   vec3 g = cross(vertices[indices[3u * own + 1u]].position - p0, vertices[indices[3u * own + 2u]].position - p0);
@@ -78,7 +84,8 @@ void main() {
       float d2 = dot(d, d);
       unshadowed *= d2 / (d2 + share);
     }
-    float seen = kShadowed ? shadowVisibility(light, p, g, own) : 1.0;
+    float seen = 1.0;
+    if (kShadowed) seen = kExactEdges && !isSample ? exactVisibility(light, p, g, own, position.w) : filteredVisibility(light, p, g, own);
     if (isSample) {
       sampled += unshadowed;
       sampledSeen += unshadowed * seen;

@@ -1,14 +1,18 @@
-// How much of a light a surface point sees, from its shadow map. The includer declares shadowViews[], vertices[], indices[],
-// shadowDepth, shadowTriangle (arrays of layers) and kFilter.
+// How much of a light a surface point sees, from its shadow map. The includer declares camera, shadowViews[], vertices[], indices[],
+// triangleMaterials[], materials[], shadowDepth, shadowTriangle (arrays of layers), kFilter and kMasked.
 //
-// No depth bias anywhere. Each texel of the filter names a surface point P and its triangle. What decides is P's height above the
-// receiver's own tangent plane, so slopes need no allowance:
+// No depth bias anywhere. Each texel names a surface point P and its triangle. What decides is P's height above the receiver's own
+// tangent plane, so slopes need no allowance:
 //   the receiver's own triangle, or P at or below the plane  → the texel sees light;
 //   P high above the plane                                   → the texel is in shadow;
 //   P near the plane (some texels: walls on floors, creases, curved surfaces) → the map is too coarse to tell, so the triangle itself
-//   is asked whether it stands between the point and the light. If so the point is dark whatever the other texels say.
-// Where texels disagree, those whose place on the receiver's plane lies behind an occluder that stands on it (the other side of a
-// wall) say nothing about the point and are left out: no light leaks under a wall, and no shadow creeps out on its lit side.
+//   is asked whether it stands between the point and the light.
+// From there two ways:
+//   exactVisibility     texels only propose occluders; where they disagree, the triangles decide. Edges are as sharp as the geometry,
+//                       whatever the map's resolution, and are smoothed over the pixel. For punctual lights.
+//   filteredVisibility  the share of texels in a tent. Blurs each of many emitter samples into a penumbra.
+// Either way, a place on the receiver's plane that lies behind an occluder standing on it (the other side of a wall) says nothing about
+// the point: no light leaks under a wall, and no shadow creeps out on its lit side.
 #ifndef RADIVOX_SHADERS_FRAME_SHADOW_GLSL
 #define RADIVOX_SHADERS_FRAME_SHADOW_GLSL
 
@@ -48,24 +52,165 @@ void fetchTriangle(uint id, out vec3 p0, out vec3 e1, out vec3 e2) {
   e2 = vertices[indices[3u * id + 2u]].position - p0;
 }
 
-// Distinct triangles of a filter's shadowed texels: the first few stand for all.
-const uint kMaxOccluders = 4u;
-struct Occluders {
-  uint ids[kMaxOccluders];
-  uint count;
-};
-void addOccluder(inout Occluders o, uint id) {
-  for (uint i = 0u; i < o.count; ++i)
-    if (o.ids[i] == id) return;
-  if (o.count < kMaxOccluders) o.ids[o.count++] = id;
+// Triangles that stand for more than themselves: smaller than a texel (neighbours that the map missed), or with holes in them. The map,
+// not their outline, says what they hide.
+bool isCoarse(uint id, vec3 e1, vec3 e2, float texel) {
+  if (kMasked && (materials[triangleMaterials[id]].flags & kMaterialAlphaMask) != 0u) return true;
+  return max(dot(e1, e1), max(dot(e2, e2), dot(e2 - e1, e2 - e1))) < texel * texel;
 }
-bool anyCutsSegment(Occluders o, vec3 p, vec3 d, float tMin, float tMax) {
-  for (uint i = 0u; i < o.count; ++i) {
-    vec3 p0, e1, e2;
-    fetchTriangle(o.ids[i], p0, e1, e2);
-    if (cutsSegment(p0, e1, e2, p, d, tMin, tMax)) return true;
+
+// Does triangle `id` stand on the plane between p and q, both lifted a little off it?
+bool separates(uint id, vec3 p, vec3 q, vec3 lift) {
+  vec3 p0, e1, e2;
+  fetchTriangle(id, p0, e1, e2);
+  return cutsSegment(p0, e1, e2, p + lift, q - p, 0.0, 1.0);
+}
+
+// What a look-up needs to know of the light, the view and the receiver.
+struct Lookup {
+  uint view;
+  int resolution;
+  ivec3 tile;     // first texel, layer
+  vec2 centre;    // the point in the tile, texels
+  float depth;    // its own
+  bool parallel;
+  vec3 toLight;   // unit
+  float tMax;     // the light's distance
+  float texel;    // m, at the point
+  float slack;    // m, rounding of what the map stores
+  float tMin;     // m, rounding of the point: nothing nearer hides it
+};
+
+bool prepareLookup(Light light, vec3 p, out Lookup l) {
+  vec4 clip;
+  if (!findShadowView(light, p, l.view, clip)) return false;
+  l.resolution = int(shadowViews[l.view].resolution);
+  l.tile = ivec3(shadowViews[l.view].offsetX, shadowViews[l.view].offsetY, shadowViews[l.view].layer);
+  l.centre = (clip.xy / clip.w * 0.5 + 0.5) * float(l.resolution);
+  l.depth = clip.z / clip.w;
+  l.parallel = light.type == kLightDirectional;
+  vec3 toLight = l.parallel ? -light.direction : light.position - p;
+  l.tMax = l.parallel ? 3.4e38 : length(toLight) * 0.999;
+  l.toLight = normalize(toLight);
+  l.texel = sqrt(shadowViews[l.view].texelFlux) * (l.parallel ? 1.0 : clip.w);
+  vec3 size = abs(p);
+  l.tMin = 4e-6 * (max(size.x, max(size.y, size.z)) + l.texel);
+  l.slack = 0.01 * l.texel + l.tMin;
+  return true;
+}
+
+const uint kLit = 0u;      // nothing above the receiver's plane
+const uint kBeside = 1u;   // an occluder near the plane, but not between the point and the light
+const uint kHidden = 2u;   // an occluder near the plane, between the point and the light
+const uint kFar = 3u;      // an occluder high above the plane
+
+// What texel `at` of the tile says about p; `id`: its triangle, unless kLit.
+uint classifyTexel(Lookup l, ivec2 at, vec3 p, vec3 g, uint own, float nearHeight, out uint id) {
+  at = clamp(at, ivec2(0), ivec2(l.resolution - 1));
+  ivec3 where = ivec3(at + l.tile.xy, l.tile.z);
+  id = texelFetch(shadowTriangle, where, 0).x;
+  if (id == 0u || id - 1u == own) return kLit;
+  id -= 1u;
+  vec3 occluder = unproject(l.view, (vec2(at) + 0.5) / float(l.resolution) * 2.0 - 1.0, texelFetch(shadowDepth, where, 0).x);
+  float height = dot(occluder - p, g);
+  if (height <= l.slack) return kLit;
+  if (height >= nearHeight) return kFar;
+  vec3 p0, e1, e2;
+  fetchTriangle(id, p0, e1, e2);
+  if (isCoarse(id, e1, e2, l.texel)) return height < 0.5 * nearHeight ? kBeside : kFar;
+  return cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax) ? kHidden : kBeside;
+}
+
+// Visibility of one point from the four texels about it: 0 or 1, or between them where coarse triangles are at the edge.
+struct PointLookup {
+  float seen;
+  bool agreed;   // all four texels say the same
+  uint ids[4];   // triangles above the receiver's plane, or kNoTexture
+};
+PointLookup lookUpPoint(Lookup l, vec3 p, vec3 g, uint own) {
+  ivec2 first = ivec2(floor(l.centre - 0.5));
+  vec2 f = l.centre - 0.5 - vec2(first);
+  PointLookup found;
+  uint states[4];
+  bool anyHidden = false, anyLit = false, anyFar = false;
+  for (uint k = 0u; k < 4u; ++k) {
+    states[k] = classifyTexel(l, first + ivec2(k & 1u, k >> 1), p, g, own, 2.0 * l.texel, found.ids[k]);
+    if (states[k] == kLit) found.ids[k] = kNoTexture;
+    anyHidden = anyHidden || states[k] == kHidden;
+    anyFar = anyFar || states[k] == kFar;
+    anyLit = anyLit || states[k] == kLit || states[k] == kBeside;
   }
+  found.agreed = !anyHidden && anyFar != anyLit;
+  found.seen = anyHidden ? 0.0 : 1.0;
+  if (anyHidden || !anyFar) return found;
+  // All in shadow: whether one of these very triangles is in the way does not matter, their neighbours are.
+  found.seen = 0.0;
+  if (!anyLit) return found;
+  // One large triangle ends here, and where it ends there is light. Several leave room for others that the map does not show.
+  uint one = kNoTexture;
+  bool single = true;
+  for (uint k = 0u; k < 4u; ++k) {
+    if (states[k] != kFar) continue;
+    single = single && (one == kNoTexture || one == found.ids[k]);
+    one = found.ids[k];
+  }
+  for (uint k = 0u; k < 4u; ++k) {
+    if (states[k] == kFar) {
+      vec3 p0, e1, e2;
+      fetchTriangle(found.ids[k], p0, e1, e2);
+      if (isCoarse(found.ids[k], e1, e2, l.texel)) continue;
+      if (cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax)) {
+        found.seen = 0.0;
+        return found;
+      }
+      if (!single) continue;
+    }
+    found.seen += ((k & 1u) != 0u ? f.x : 1.0 - f.x) * ((k >> 1) != 0u ? f.y : 1.0 - f.y);
+  }
+  return found;
+}
+
+bool anySeparates(PointLookup found, vec3 p, vec3 q, vec3 lift) {
+  for (uint k = 0u; k < 4u; ++k)
+    if (found.ids[k] != kNoTexture && separates(found.ids[k], p, q, lift)) return true;
   return false;
+}
+
+// Share of the pixel that sees `light`. viewDepth: p's distance along the view axis.
+const uint kEdgeSamples = 8u;
+float exactVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
+  Lookup l;
+  if (!prepareLookup(light, p, l)) return 1.0;
+  PointLookup centre = lookUpPoint(l, p, g, own);
+  float pixel = camera.pixelAngle * (camera.orthographic != 0u ? 1.0 : viewDepth);
+  if (centre.agreed && pixel < l.texel) return centre.seen;
+
+  // Points of the pixel, on the receiver's plane along the view.
+  vec3 across = normalize(camera.inverseViewProjection[0].xyz) * pixel;
+  vec3 down = normalize(camera.inverseViewProjection[1].xyz) * pixel;
+  vec3 d = camera.orthographic != 0u ? camera.forward : normalize(p - camera.position);
+  float slope = dot(d, g);
+  slope = abs(slope) > 0.1 ? slope : (slope < 0.0 ? -0.1 : 0.1);  // at grazing angles a pixel is long: not beyond ten times its width
+  vec3 lift = 2.0 * l.slack * g;
+  float seen = 0.0, total = 0.0;
+  for (uint k = 0u; k < kEdgeSamples; ++k) {
+    vec2 offset = vec2((float(k) + 0.5) / float(kEdgeSamples), float(bitfieldReverse(k) >> 8) * (1.0 / 16777216.0) + 0.5 / float(kEdgeSamples)) - 0.5;
+    vec3 q = offset.x * across + offset.y * down;
+    q = p + q - d * (dot(q, g) / slope);
+    q -= g * dot(q - p, g);
+    Lookup at;
+    float v = 1.0;
+    if (prepareLookup(light, q, at)) {
+      // Off a lit point of a hollow surface the plane runs behind the surface: what it meets at once is the surface itself.
+      if (centre.seen > 0.0) at.tMin += 2.0 * length(q - p);
+      PointLookup there = lookUpPoint(at, q, g, own);
+      v = there.seen;
+      if (v != centre.seen && (anySeparates(there, p, q, lift) || anySeparates(centre, p, q, lift))) continue;
+    }
+    seen += v;
+    total += 1.0;
+  }
+  return total > 0.0 ? seen / total : centre.seen;
 }
 
 // A tent of half width kFilter texels; 0: the nearest texel decides, its neighbours are still asked about contact.
@@ -76,74 +221,58 @@ float tentWeight(ivec2 texel, vec2 centre) {
   return tent.x * tent.y;
 }
 
-// Share in [0, 1] of the filter's texels that see `light` from p. g: geometric normal on the light's side; own: p's triangle.
-float shadowVisibility(Light light, vec3 p, vec3 g, uint own) {
-  uint view;
-  vec4 clip;
-  if (!findShadowView(light, p, view, clip)) return 1.0;
-  int resolution = int(shadowViews[view].resolution);
-  ivec3 tile = ivec3(shadowViews[view].offsetX, shadowViews[view].offsetY, shadowViews[view].layer);
-  vec2 centre = (clip.xy / clip.w * 0.5 + 0.5) * float(resolution);
-  ivec2 first = ivec2(floor(centre - 0.5 - float(kReach))) + 1;
-  bool parallel = light.type == kLightDirectional;
-  vec3 toLight = parallel ? -light.direction : light.position - p;
-  float tMax = parallel ? 3.4e38 : length(toLight) * 0.999;
-  toLight = normalize(toLight);
-  float texel = sqrt(shadowViews[view].texelFlux) * (parallel ? 1.0 : clip.w);  // m, at p
-  float nearHeight = float(2u * kReach) * texel;
-  vec3 size = abs(p);
-  float slack = 0.01 * texel + 4e-6 * (max(size.x, max(size.y, size.z)) + texel);  // rounding of p and P
+// Distinct triangles of a filter's shadowed texels: the first few stand for all.
+const uint kMaxOccluders = 4u;
 
-  float seen = 0.0, total = 0.0;
+// Share in [0, 1] of the filter's texels that see `light` from p. g: geometric normal on the light's side; own: p's triangle.
+float filteredVisibility(Light light, vec3 p, vec3 g, uint own) {
+  Lookup l;
+  if (!prepareLookup(light, p, l)) return 1.0;
+  ivec2 first = ivec2(floor(l.centre - 0.5 - float(kReach))) + 1;
+  float seen = 0.0;
   uint seenBits[2] = uint[2](0u, 0u);  // a bit per texel of the filter, 36 at most
-  Occluders occluders;
-  occluders.count = 0u;
+  uint occluders[kMaxOccluders];
+  uint occluderCount = 0u;
   for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
     ivec2 at = first + ivec2(k % (2u * kReach), k / (2u * kReach));
-    float weight = tentWeight(at, centre);
-    total += weight;
-    at = clamp(at, ivec2(0), ivec2(resolution - 1));
-    ivec3 where = ivec3(at + tile.xy, tile.z);
-    uint id = texelFetch(shadowTriangle, where, 0).x;
-    bool lit = id == 0u || id - 1u == own;
-    if (!lit) {
-      id -= 1u;
-      vec3 occluder = unproject(view, (vec2(at) + 0.5) / float(resolution) * 2.0 - 1.0, texelFetch(shadowDepth, where, 0).x);
-      float height = dot(occluder - p, g);
-      lit = height <= slack;
-      if (!lit && height < nearHeight) {
-        vec3 p0, e1, e2;
-        fetchTriangle(id, p0, e1, e2);
-        if (cutsSegment(p0, e1, e2, p, toLight, slack, tMax)) return 0.0;
-        // A triangle smaller than a texel stands for neighbours that the map missed: trust the height instead.
-        bool speck = max(dot(e1, e1), max(dot(e2, e2), dot(e2 - e1, e2 - e1))) < texel * texel;
-        lit = !speck || height < float(kReach) * texel;
-      }
-      if (!lit) addOccluder(occluders, id);
-    }
-    if (lit) {
-      seen += weight;
+    uint id;
+    uint state = classifyTexel(l, at, p, g, own, 2.0 * float(kReach) * l.texel, id);
+    if (state == kHidden) return 0.0;
+    if (state != kFar) {
+      seen += tentWeight(at, l.centre);
       seenBits[k / 32u] |= 1u << (k % 32u);
+      continue;
     }
+    bool known = false;
+    for (uint i = 0u; i < occluderCount; ++i) known = known || occluders[i] == id;
+    if (!known && occluderCount < kMaxOccluders) occluders[occluderCount++] = id;
   }
   if (seen <= 0.0) return 0.0;
-  if (occluders.count == 0u) return 1.0;
+  if (occluderCount == 0u) return 1.0;
 
   // Texels disagree. Where on the receiver's plane is each, and does an occluder stand between that place and p?
   float validSeen = 0.0, valid = 0.0;
+  vec3 lift = 2.0 * l.slack * g;
   for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
     ivec2 at = first + ivec2(k % (2u * kReach), k / (2u * kReach));
-    vec3 q = unproject(view, (vec2(at) + 0.5) / float(resolution) * 2.0 - 1.0, clip.z / clip.w);
-    vec3 d = parallel ? light.direction : q - light.position;
+    vec3 q = unproject(l.view, (vec2(at) + 0.5) / float(l.resolution) * 2.0 - 1.0, l.depth);
+    vec3 d = l.parallel ? light.direction : q - light.position;
     float slope = dot(d, g);
     if (slope < 0.0) q += d * (dot(p - q, g) / slope);
-    if (anyCutsSegment(occluders, p + 2.0 * slack * g, q - p, 0.0, 1.0)) continue;
-    float weight = tentWeight(at, centre);
+    bool apart = false;
+    for (uint i = 0u; i < occluderCount && !apart; ++i) apart = separates(occluders[i], p, q, lift);
+    if (apart) continue;
+    float weight = tentWeight(at, l.centre);
     valid += weight;
     if ((seenBits[k / 32u] >> (k % 32u) & 1u) != 0u) validSeen += weight;
   }
   if (valid > 0.0) return validSeen / valid;
-  return anyCutsSegment(occluders, p, toLight, slack, tMax) ? 0.0 : 1.0;
+  for (uint i = 0u; i < occluderCount; ++i) {
+    vec3 p0, e1, e2;
+    fetchTriangle(occluders[i], p0, e1, e2);
+    if (cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax)) return 0.0;
+  }
+  return 1.0;
 }
 
 #endif

@@ -15,7 +15,7 @@ namespace {
 using frame_test::FrameOptions;
 using frame_test::FrameRun;
 using frame_test::SceneBuilder;
-using oracle::LightOracle;
+using oracles::LightOracle;
 
 class DirectTest : public oracles::GpuTest {};
 

@@ -13,7 +13,7 @@ namespace {
 using frame_test::FrameOptions;
 using frame_test::FrameRun;
 using frame_test::SceneBuilder;
-using oracle::LightOracle;
+using oracles::LightOracle;
 
 class GBufferTest : public oracles::GpuTest {};
 
@@ -62,7 +62,7 @@ void compareWithRays(gpu::Device& device, const SceneBuilder& b, uint32_t width,
     for (uint32_t x = 0; x < width; ++x) {
       const size_t i = size_t{y} * width + x;
       // A pixel whose centre is within a hundredth of a pixel of a silhouette may fall on either side of it.
-      std::optional<oracle::RayHit> hit;
+      std::optional<oracles::RayHit> hit;
       glm::dvec3 origin, direction;
       bool certain = true;
       for (int k = 0; k < 5; ++k) {

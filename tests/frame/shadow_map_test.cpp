@@ -52,7 +52,7 @@ SceneBuilder makeRoom() {
 /// Every texel of every view: id and depth of what the ray through its centre meets first. Returns how many texels were compared.
 size_t compareWithRays(FrameRun& run, const SceneBuilder& b, const scene::LightOptions& lights) {
   const scene::LightSetup setup = scene::setUpLights(b.scene, lights);
-  const oracle::LightOracle rays(b.scene);
+  const oracles::LightOracle rays(b.scene);
   std::vector<std::vector<uint32_t>> ids;
   std::vector<std::vector<float>> depths;
   for (uint32_t layer = 0; layer < setup.shadowLayers; ++layer) {

@@ -14,9 +14,9 @@ namespace {
 class FrameTruthTest : public oracles::GpuTest {
  protected:
   void compare(const std::string& name, double weightA, double leastPsnr) {
-    const std::string folder = oracle::sharedFolder();
+    const std::string folder = oracles::sharedFolder();
     if (folder.empty()) GTEST_SKIP() << "no ../shared";
-    const oracle::Truth truth = oracle::loadTruth(name + "_b1", weightA);
+    const oracles::Truth truth = oracles::loadTruth(name + "_b1", weightA);
     frame_test::FrameOptions options;
     options.width = truth.direct.width;
     options.height = truth.direct.height;
@@ -25,11 +25,11 @@ class FrameTruthTest : public oracles::GpuTest {
     const image::Image direct = run.picture("direct.irradiance");
     frame_test::show(direct, name + "_direct");
     frame_test::show(truth.direct, name + "_truth");
-    const oracle::Difference difference = oracle::compareToTruth(truth.direct, direct, truth.albedo);
+    const oracles::Difference difference = oracles::compareToTruth(truth.direct, direct, truth.albedo);
     std::printf("%s: irradiance_direct %.2f dB, bias %.4f\n", name.c_str(), difference.psnr, difference.bias);
     EXPECT_GT(difference.psnr, leastPsnr);
     EXPECT_NEAR(difference.bias, 1.0, 0.02);
-    const oracle::Difference albedo = oracle::compareToTruth(truth.albedo, run.picture("gbuffer.albedo"), truth.albedo);
+    const oracles::Difference albedo = oracles::compareToTruth(truth.albedo, run.picture("gbuffer.albedo"), truth.albedo);
     EXPECT_GT(albedo.psnr, 30.0) << "the camera does not look where the truth's did";
   }
 };

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace radivox::oracle {
+namespace radivox::oracles {
 
 namespace {
 
@@ -141,4 +141,4 @@ void LightOracle::cameraRay(const scene::CameraDescription& camera, uint32_t wid
   }
 }
 
-}  // namespace radivox::oracle
+}  // namespace radivox::oracles

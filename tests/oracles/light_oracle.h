@@ -8,7 +8,7 @@
 
 #include "engine/scene/scene.h"
 
-namespace radivox::oracle {
+namespace radivox::oracles {
 
 struct RayHit {
   uint32_t triangle = 0;
@@ -45,4 +45,4 @@ class LightOracle {
   std::vector<std::array<glm::dvec3, 3>> corners_;
 };
 
-}  // namespace radivox::oracle
+}  // namespace radivox::oracles
