@@ -81,7 +81,7 @@ class Liveness {
 /// "no reader of a.x, a.y; b does not want a.x: reason; c was left out".
 Culled explainUnread(const Draft& draft, uint32_t node) {
   const auto& ports = draft.declarations[node].ports;
-  std::string unread;
+  std::string unread, all;
   std::string details;
   std::string root;
   for (uint32_t p = 0; p < ports.size(); ++p) {
@@ -105,8 +105,9 @@ Culled explainUnread(const Draft& draft, uint32_t node) {
       }
     }
     if (explained || !ports[p].optional) unread += (unread.empty() ? "" : ", ") + draft.portName(node, p);
+    all += (all.empty() ? "" : ", ") + draft.portName(node, p);
   }
-  if (unread.empty()) unread = "anything of " + draft.nodeName(node);
+  if (unread.empty()) unread = all;
   const std::string reason = "no reader of " + unread + details;
   return {reason, root.empty() ? reason : root};
 }

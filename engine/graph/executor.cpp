@@ -108,6 +108,17 @@ void Executor::importImage(std::string_view name, gpu::Image& image, uint64_t ve
   }
 }
 
+void Executor::setCount(std::string_view name, uint64_t value) {
+  for (const PlannedStep& step : impl_->plan.steps) {
+    for (const auto& published : step.counts) {
+      if (published.name != name) continue;
+      throw Error(ErrorCode::BadInput, "the count " + published.name + " is published by " + impl_->plan.nodeNames[step.node] +
+                                           "; only known counts can be set");
+    }
+  }
+  impl_->counts[std::string(name)] = value;
+}
+
 void Executor::run(const Progress& progress, const std::function<bool()>& cancelled) {
   impl_->progress = progress;
   impl_->cancelled = cancelled;

@@ -46,6 +46,10 @@ class Executor {
   void importBuffer(std::string_view name, const gpu::Buffer& buffer, uint64_t version);
   void importImage(std::string_view name, gpu::Image& image, uint64_t version);
 
+  /// Another value for a count that no node publishes ("width" and "height" after a resize): what it shapes is made anew by the next
+  /// run(), everything else stays. Traits and request keep what they say.
+  void setCount(std::string_view name, uint64_t value);
+
   /// Runs what is stale on our own command buffers and waits. `progress` is called from this thread. `cancelled`, asked between steps,
   /// ends the run with Error(BadInput, "interrupted").
   void run(const Progress& progress = {}, const std::function<bool()>& cancelled = {});

@@ -148,6 +148,15 @@ TEST(Cull, OptionalOutputsExistOnlyForReadersOrOutputs) {
   EXPECT_EQ(reasons(without).at("b"), "needs off.out, which was left out: off");
 }
 
+TEST(Cull, ANodeOfOptionalOutputsNamesThemAll) {
+  Graph g;
+  addFake(g, "inspect", [](Declaration& d) {
+    d.write("face", kWords, "words").optional = true;
+    d.write("cluster", kWords, "words").optional = true;
+  });
+  EXPECT_EQ(reasons(PlanInput().compile(g)).at("inspect"), "no reader of inspect.face, inspect.cluster");
+}
+
 TEST(Cull, PublisherOfACountIsNeededWithoutAnEdge) {
   //  counter ┄┄ count items ┄┄▶ shaped ──▶ (output)
   Graph g;

@@ -161,6 +161,24 @@ TEST_F(ExecutorTest, ACountMayBeZero) {
   EXPECT_TRUE(h.download<uint32_t>("shaped.out").empty());
 }
 
+TEST_F(ExecutorTest, AKnownCountMayChange) {
+  NodeHarness h(device(), {}, {.width = 6, .height = 2});
+  addCounter(h.graph(), "counter", "items");
+  addFill(h.graph(), "prepared", Extent::of("items"));
+  addFill(h.graph(), "view", Extent::of("width") * "height");
+  h.output("prepared.out");
+  h.output("view.out");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("view.out"), repeat(12, 1));
+  h.executor().setCount("width", 10);
+  EXPECT_FALSE(h.executor().isReadyToRecord()) << "something must be allocated first";
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("view.out"), repeat(20, 1));
+  EXPECT_EQ(h.runCount("view"), 2u);
+  EXPECT_EQ(h.runCount("prepared"), 1u);
+  EXPECT_THROW(h.executor().setCount("items", 3), Error);
+}
+
 TEST_F(ExecutorTest, ChainsOfCountsSettleInOneRun) {
   // a counts 3; b is shaped by it and publishes 30; c is shaped by that.
   NodeHarness h(device());
