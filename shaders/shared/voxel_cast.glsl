@@ -1,18 +1,21 @@
 // What a ray sees in the voxel grid: the first voxel face that it crosses. Over shared/traversal.glsl and shared/voxel_lookup.glsl;
 // tests/oracles/traversal_oracle.h says the same on the CPU.
 //
-// Before including, bind GRID, OCCUPANCY, RANK, FACE_MASK, FIRST_FACE, FACES of voxel_lookup.glsl, DISTANCE for kSkipBricks,
-// RADIVOX_BIND_CLEARANCE for kSkipClearance, and define RADIVOX_SKIP and RADIVOX_HIT (constants of the values below).
+// Before including, bind GRID, OCCUPANCY, RANK of voxel_lookup.glsl, RADIVOX_BIND_CAST_FIRST (faces first), RADIVOX_BIND_PLANES and
+// RADIVOX_BIND_PLANE_EXTRAS (shared/voxel_plane.h), define RADIVOX_VOXEL_COUNT (V); DISTANCE for kSkipBricks, RADIVOX_BIND_CLEARANCE for kSkipClearance, and define RADIVOX_SKIP and RADIVOX_HIT
+// (constants of the values below). Call castBegin() first.
 //
-// Which face is hit (kHitPlane). A face stands for surface in its voxel: an area a_f about the mean point x_f with mean normal n_f.
-// Taking every occupied voxel for a wall stops rays on the next step of the very surface they leave; lifting origins off the
-// surface puts some into the next room. So a ray hits face f when, inside the voxel,
-//   (1) it looks at the face: d·e_f < 0 and d·n_f < 0;
-//   (2) it passes from the front of the plane (x_f, n_f) to its back, or was in front of the face f of the voxel before and is behind
-//       this one's (surfaces that bend pass between two planes otherwise);
-//   (3) it does so within the part of the voxel that the surface can cover: |p − x_f| ≤ min(x_f, 1 − x_f) + 0.05 along both axes of
-//       the face, unless a_f says that the surface fills the voxel.
-// Of several, one is drawn with probability ∝ a_f (−d·e_f). In the voxel of the origin, faces on the origin's own plane do not count.
+// Which face is hit (kHitPlane). Taking every occupied voxel for a wall stops rays on the next step of the very surface they leave;
+// lifting origins off the surface puts some into the next room. So the faces of a voxel stand for planes: those whose mean
+// planes agree (within 8° and 0.05 voxels of the largest's) for one, through its mean point x with its mean normal n. A ray
+// hits a plane when, inside the voxel,
+//   (1) it passes from one side to the other; or was on the near side of a plane of the voxel before that looks along the same
+//       axis and is behind this one (a surface that bends passes between two planes otherwise);
+//   (2) it does so where the surface can be: |p − x| ≤ min(x, 1 − x) + 0.05 along both axes across the largest face, unless that
+//       face's area says that the surface fills the voxel.
+// Of several planes the first counts. Its faces that the ray sees have e_f·n of the near side's sign and e_f·d < 0 (failing those, the
+// voxel's faces of such directions); one is drawn with probability ∝ |n_k d_k|, which is a_f |d·e_f| for a plane. None there:
+// the back of a one-sided surface, which absorbs. In the voxel of the origin, planes through its own surface do not count.
 // kHitVoxel is the paper's: any voxel with a face that looks at the ray stops it.
 //
 // Measured against exact rays on Sponza (N = 128, all faces, weight a_s): RMSE of the missed share 0.013 (kHitVoxel lifted
@@ -22,6 +25,7 @@
 #include "shared/clearance.h"
 #include "shared/traversal.glsl"
 #include "shared/voxel_lookup.glsl"
+#include "shared/voxel_plane.h"
 
 const uint kSkipNothing = 0u;    // plain steps
 const uint kSkipBricks = 1u;     // brickDistances[]: leap over empty bricks
@@ -32,16 +36,27 @@ const uint kHitVoxel = 1u;
 const float kOwnPlaneDistance = 0.25;  // voxels
 const float kOwnPlaneCosine = 0.82;    // 35°
 const float kCoverSlack = 0.05;        // voxels
-const float kCoverFull = 0.95;         // a_f from which a face fills its voxel
-const float kInFront = -1e-3;          // voxels behind a plane that still count as in front of it, for the next voxel
+const float kInFront = -1e-3;          // behind a plane by this still counts as in front of it, for the next voxel (voxels / √3 to 1)
 
 const uint kHitNothing = kNone;           // face: the ray left the grid
 const uint kHitBack = kNone - 1u;         // face: stopped by the back of a one-sided surface
 
+layout(set = 0, binding = RADIVOX_BIND_PLANES, scalar) readonly buffer RadivoxPlanes { uvec2 planes[]; };
+layout(set = 0, binding = RADIVOX_BIND_PLANE_EXTRAS, scalar) readonly buffer RadivoxPlaneExtras { uint planeExtras[]; };
+layout(set = 0, binding = RADIVOX_BIND_CAST_FIRST, scalar) readonly buffer RadivoxCastFirst { uint castFirst[]; };
+
+// The grid in registers.
+uvec3 castSize;
+uvec3 castBricks;
+void castBegin() {
+  castSize = grid.size;
+  castBricks = grid.bricks;
+}
+
 #ifdef RADIVOX_BIND_CLEARANCE
 layout(set = 0, binding = RADIVOX_BIND_CLEARANCE, scalar) readonly buffer RadivoxClearance { uint clearance[]; };
 float clearanceAt(vec3 voxel) {
-  uint i = clearanceIndex(uvec3(ivec3(voxel) + 1), grid.size);
+  uint i = clearanceIndex(uvec3(ivec3(voxel) + 1), castSize);
   uint word = clearance[i >> 2];
   // Two constant shifts instead of one that differs per lane.
   word = (i & 1u) != 0u ? word >> 8 : word;
@@ -51,7 +66,7 @@ float clearanceAt(vec3 voxel) {
 #endif
 
 // Also true of what is no number.
-bool isOutside(vec3 voxel) { return !(all(greaterThanEqual(voxel, vec3(0.0))) && all(lessThan(voxel, vec3(grid.size)))); }
+bool isOutside(vec3 voxel) { return !(all(greaterThanEqual(voxel, vec3(0.0))) && all(lessThan(voxel, vec3(castSize)))); }
 
 uint castBrickDistance(uint brick) {
 #ifdef RADIVOX_BIND_DISTANCE
@@ -64,7 +79,7 @@ uint castBrickDistance(uint brick) {
 // Moves on until the cursor is in a voxel that may have faces, or outside; not at all if it is already. Returns whether it moved.
 bool castMarch(TraversalRay ray, inout TraversalCursor cursor) {
   // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
-  uint all_ = grid.size.x + grid.size.y + grid.size.z + 4u;
+  uint all_ = castSize.x + castSize.y + castSize.z + 4u;
   uint passes = all_;
   if (RADIVOX_SKIP == kSkipClearance) {
 #ifdef RADIVOX_BIND_CLEARANCE
@@ -78,7 +93,7 @@ bool castMarch(TraversalRay ray, inout TraversalCursor cursor) {
       uvec3 voxel = uvec3(cursor.voxel);
       vec3 low = cursor.voxel;
       vec3 high = cursor.voxel + 1.0;
-      uint brick = brickOf(voxel, grid.bricks);
+      uint brick = brickOf(voxel, castBricks);
       uint distance = RADIVOX_SKIP == kSkipBricks ? castBrickDistance(brick) : 0u;
       if (distance == 0u) {
         if (hasBit(occupancy[brick], bitOf(voxel))) break;
@@ -98,97 +113,107 @@ float castDot(vec3 a, vec3 b) {
   return all_;
 }
 
-// The direction of a packed normal, |x| + |y| + |z| = 1: signs and ratios of distances to a plane need no unit normal.
-vec3 castNormal(uint code) {
-  precise float x = float(int(code << 16) >> 16) * (1.0 / 32767.0);
-  precise float y = float(int(code) >> 16) * (1.0 / 32767.0);
-  precise float z = 1.0 - abs(x) - abs(y);
-  float fold = max(-z, 0.0);
-  precise float foldedX = x + (x >= 0.0 ? -fold : fold);
-  precise float foldedY = y + (y >= 0.0 ? -fold : fold);
-  return vec3(foldedX, foldedY, z);
-}
+// The plane after plane `i` of a voxel, counted from 0.
+uvec2 nextPlane(uint voxel, uint i) { return planes[RADIVOX_VOXEL_COUNT + planeExtras[voxel] + i]; }
 
-// The faces of `voxel` on the plane of a point: they do not count in the point's own voxel.
-uint ownFaces(uint voxel, uvec3 coordinate, vec3 position, vec3 normal) {
-  uint mask = faceMasks[voxel];
+// The planes of `voxel` that lie on the plane of a point, bit by bit in their order, and whether there are others.
+uint ownPlanes(uint voxel, uvec3 coordinate, vec3 position, vec3 normal, out bool crowded) {
   uint own = 0u;
-  for (uint f = 0u, s = firstFaces[voxel]; f < kFaceCount; ++f) {
-    if (((mask >> f) & 1u) == 0u) continue;
-    Face face = faces[s++];
-    precise float offset = abs(castDot(facePosition(face, coordinate) - position, normal));
-    precise float cosine = abs(castDot(decodeNormal(face.normal), normal));
-    if (offset < kOwnPlaneDistance && cosine > kOwnPlaneCosine) own |= 1u << f;
+  crowded = false;
+  uvec2 plane = planes[voxel];
+  for (uint i = 0u; i < kFaceCount; ++i) {
+    vec3 n = planeNormal(plane.x);
+    precise vec3 center = vec3(coordinate) + decodePosition(plane.y);
+    float offset = abs(castDot(center - position, normal));
+    // n is no unit vector: compare squares.
+    float along = castDot(n, normal);
+    precise float least = kOwnPlaneCosine * kOwnPlaneCosine * castDot(n, n);
+    precise float square = along * along;
+    bool isOwn = offset < kOwnPlaneDistance && square > least;
+    own |= isOwn ? 1u << i : 0u;
+    crowded = crowded || !isOwn;
+    if ((plane.y & kPlaneMore) == 0u) break;
+    plane = nextPlane(voxel, i);
   }
   return own;
 }
 
-// (3) above: does the ray, passing `before` in front of the plane and `behind` at its back, meet the face where it has surface?
-bool castCovers(Face face, vec3 mean, vec3 center, vec3 enterPoint, vec3 leavePoint, float before, float behind, uint axis) {
-  precise vec3 reach = min(mean, 1.0 - mean);
-  vec3 across = vec3(axis != 0u, axis != 1u, axis != 2u);
-  precise vec3 sides = mix(vec3(1.0), 2.0 * reach, greaterThan(across, vec3(0.5)));
-  precise float cover = sides.x * sides.y * sides.z;
-  // A mean of several surfaces says nothing about where they end.
-  if (face.area > kCoverFull || cover < 0.98 * face.area) return true;
-  // Both sides times before + behind: no division.
-  precise float whole = before + behind;
-  precise vec3 offset = (enterPoint - center) * whole + (leavePoint - enterPoint) * before;
-  precise vec3 limit = (reach + kCoverSlack) * whole;
-  return all(lessThanEqual(abs(offset) * across, limit));
-}
-
-// The face of the cursor's voxel that the ray hits before it leaves the voxel; kHitNothing: none, the ray goes on; kHitBack. Faces in
-// `excluded` do not count. `inFront` carries rule (2) from voxel to voxel: 0 where the voxel before had no faces. `random` is uniform.
+// The face of the cursor's voxel, which is in the grid, that the ray hits before it leaves the voxel; kHitNothing: none, the ray goes on;
+// kHitBack. Planes in `excluded` do not count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel before had no
+// faces. `random` is uniform.
 uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uint inFront, uint random) {
   uint wasInFront = inFront;
   inFront = 0u;
-  uint voxel = voxelIndex(ivec3(cursor.voxel));
-  if (voxel == kNone) return kHitNothing;
-  uint mask = faceMasks[voxel];
-  uint first = firstFaces[voxel];
+  uvec3 coordinate = uvec3(cursor.voxel);
+  uint brick = brickOf(coordinate, castBricks);
+  uint bit = bitOf(coordinate);
+  uvec2 word = occupancy[brick];
+  if (!hasBit(word, bit)) return kHitNothing;
+  uint voxel = brickRank[brick] + countBitsBelow(word, bit);
+  uvec2 plane = planes[voxel];
+  uint mask = plane.x >> 26;
   vec3 exits = traversalExits(ray, cursor.voxel);
   float exit = min(exits.x, min(exits.y, exits.z));
   precise vec3 enterPoint = ray.origin + cursor.time * ray.direction;
-  precise vec3 leavePoint = ray.origin + exit * ray.direction;
-  vec3 weight = vec3(0.0);
-  uvec3 found = uvec3(0u);
-  bool back = false;
-  for (uint axis = 0u; axis < 3u; ++axis) {
-    float d = ray.direction[axis];
-    uint facing = 2u * axis + (d > 0.0 ? 1u : 0u);
-    bool isFront = ((mask >> facing) & 1u) != 0u;
-    // One-sided surface seen from behind: its face looks the other way.
-    uint f = isFront ? facing : facing ^ 1u;
-    if (d == 0.0 || ((mask & ~excluded) >> f & 1u) == 0u) continue;
-    uint s = first + uint(bitCount(mask & ((1u << f) - 1u)));
-    Face face = faces[s];
-    bool hits = true;
+  precise vec3 passage = (ray.origin + exit * ray.direction) - enterPoint;
+  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(greaterThan(ray.direction, vec3(0.0)));
+
+  // The first plane that is crossed: `before` of `whole` of the passage lies in front of it.
+  float bestBefore = 2.0;
+  float bestWhole = 1.0;
+  vec3 bestNormal = vec3(0.0);
+  uint bestFaces = 0u;
+  bool more = mask != 0u;
+  for (uint i = 0u; more; ++i) {
+    vec3 n = planeNormal(plane.x);
+    uint axis = planeAxis(n);
+    vec3 mean = decodePosition(plane.y);
+    bool counts = ((excluded >> i) & 1u) == 0u;
+    float slope = castDot(ray.direction, n);
+    n = slope > 0.0 ? -n : n;
+    // Axes along which the near side looks at the ray.
+    bvec3 seen = lessThan(n * ray.direction, vec3(0.0));
+    uint looks = (seen.x ? 1u << facing.x : 0u) | (seen.y ? 1u << facing.y : 0u) | (seen.z ? 1u << facing.z : 0u);
+    bool hits = counts && looks != 0u;
+    float before = 0.0;
+    float whole = 1.0;
     if (RADIVOX_HIT == kHitPlane) {
-      vec3 mean = decodePosition(face.position);
-      precise vec3 center = cursor.voxel + mean;
-      vec3 n = castNormal(face.normal);
-      n = isFront ? n : -n;
-      float before = castDot(enterPoint - center, n);
-      float after = castDot(leavePoint - center, n);
-      if (after >= kInFront) inFront |= 1u << facing;
-      hits = castDot(ray.direction, n) < 0.0 && after <= 0.0 && (before >= 0.0 || ((wasInFront >> facing) & 1u) != 0u);
-      hits = hits && castCovers(face, mean, center, enterPoint, leavePoint, max(before, 0.0), -after, axis);
+      precise vec3 entry = enterPoint - cursor.voxel - mean;
+      before = castDot(entry, n);
+      float after = castDot(entry + passage, n);
+      hits = hits && after <= 0.0 && (before >= 0.0 || (wasInFront & looks) != 0u);
+      inFront |= counts && after >= kInFront ? looks : 0u;
+      before = max(before, 0.0);
+      precise float both = before - after;
+      whole = both;
+      // Both sides times before − after: no division.
+      precise vec3 offset = abs(entry * whole + passage * before);
+      precise vec3 reach = (min(mean, 1.0 - mean) + kCoverSlack) * whole;
+      hits = hits && ((plane.y & kPlaneBounded) == 0u || ((offset.x <= reach.x || axis == 0u) && (offset.y <= reach.y || axis == 1u) &&
+                                                          (offset.z <= reach.z || axis == 2u)));
     }
-    precise float w = face.area * abs(d);
-    if (hits && isFront) {
-      weight[axis] = w;
-      found[axis] = s;
+    precise float left = before * bestWhole;
+    precise float right = bestBefore * whole;
+    if (hits && left < right) {
+      bestBefore = before;
+      bestWhole = whole;
+      bestNormal = n;
+      bestFaces = looks | ((plane.x >> 20) & looks) << 8;
     }
-    back = back || (hits && !isFront);
+    more = (plane.y & kPlaneMore) != 0u;
+    if (more) plane = nextPlane(voxel, i);
   }
-  precise float two = weight.x + weight.y;
-  precise float total = two + weight.z;
-  if (!(total > 0.0)) return back ? kHitBack : kHitNothing;
+  if (bestFaces == 0u) return kHitNothing;
+  // A face that mixes in other surface may have a plane of its own.
+  bestFaces = bestFaces >> 8 != 0u ? bestFaces >> 8 : bestFaces & mask;
+  precise vec3 weight = abs(bestNormal * ray.direction);
+  vec3 w = vec3((bestFaces >> facing.x) & 1u, (bestFaces >> facing.y) & 1u, (bestFaces >> facing.z) & 1u) * weight;
+  precise float two = w.x + w.y;
+  precise float total = two + w.z;
   precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
-  if (draw < weight.x) return found.x;
-  if (draw >= two && weight.z > 0.0) return found.z;
-  return weight.y > 0.0 ? found.y : found.x;
+  uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
+  if (!(total > 0.0)) return kHitBack;
+  return castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
 }
 
 #endif

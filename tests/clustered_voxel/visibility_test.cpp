@@ -55,6 +55,7 @@ struct NodeRun {
     }
     harness.setCount("faces", faceCount);
     harness.setCount("clusters", clusterCount);
+    harness.setCount("voxels", s.voxels.size());
     harness.set("visibility.rays", std::to_string(settings.rays));
     harness.set("visibility.traversal", settings.bresenham ? "bresenham" : "dda");
     harness.set("visibility.frame", settings.axisFrame ? "axis" : "normal");

@@ -7,6 +7,7 @@
 
 #include "modules/clustered_voxel/visibility/directions.h"
 #include "shaders/clustered_voxel/visibility/visibility.h"
+#include "shaders/shared/voxel_plane.h"
 
 namespace radivox::oracle {
 namespace {
@@ -50,109 +51,131 @@ int firstAxis(const std::array<Axis, 3>& axes, const ivec3& v) {
 
 float dot(const vec3& a, const vec3& b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
 
-/// The octahedral direction before it is made a unit vector.
-vec3 planeNormal(uint32_t code) {
-  float x = static_cast<float>(static_cast<int16_t>(code & 0xffffu)) * (1.0f / 32767.0f);
-  float y = static_cast<float>(static_cast<int16_t>(code >> 16)) * (1.0f / 32767.0f);
-  const float z = 1.0f - std::fabs(x) - std::fabs(y);
-  if (z < 0.f) {
-    x += x >= 0.f ? z : -z;
-    y += y >= 0.f ? z : -z;
-  }
-  return {x, y, z};
-}
-
-/// A voxel's surface as a ray sees it along one axis.
-struct Candidate {
-  uint32_t face = shared::kNone;
-  bool front = false;  ///< false: the back of a face that looks the other way
-  uint32_t facing = 0;
-  float weight = 0.f;
+/// Faces of one voxel whose mean planes agree.
+struct OraclePlane {
+  uint32_t faces = 0;    ///< bit f
+  uint32_t largest = 0;  ///< face index
+  /// The normal that rays test: of the largest face, in 10 bits a coordinate, |x| + |y| + |z| = 1.
+  vec3 normal(const VoxelStructures& s) const { return shared::planeNormal(shared::planeNormalCode(s.faces[largest].normal)); }
 };
+
+/// Largest face first; those on its plane join it.
+std::vector<OraclePlane> planesOf(const VoxelStructures& s, uint32_t voxel) {
+  std::vector<OraclePlane> planes;
+  uint32_t left = s.mask[voxel];
+  while (left != 0) {
+    uint32_t founder = 6;
+    for (uint32_t f = 0; f < 6; ++f) {
+      if (((left >> f) & 1u) == 0) continue;
+      if (founder == 6 || s.faces[s.faceIndex(voxel, f)].area > s.faces[s.faceIndex(voxel, founder)].area) founder = f;
+    }
+    OraclePlane plane;
+    plane.largest = s.faceIndex(voxel, founder);
+    const vec3 n = shared::decodeNormal(s.faces[plane.largest].normal), x = shared::decodePosition(s.faces[plane.largest].position);
+    for (uint32_t f = 0; f < 6; ++f) {
+      if (((left >> f) & 1u) == 0) continue;
+      const shared::Face& face = s.faces[s.faceIndex(voxel, f)];
+      const bool agrees = std::fabs(dot(shared::decodeNormal(face.normal), n)) > shared::kSamePlaneCosine &&
+                          std::fabs(dot(shared::decodePosition(face.position) - x, n)) < shared::kSamePlaneDistance;
+      if (f == founder || agrees) plane.faces |= 1u << f;
+    }
+    left &= ~plane.faces;
+    planes.push_back(plane);
+  }
+  return planes;
+}
 
 struct Caster {
   const VoxelStructures& s;
   bool voxelHit;
-  vec3 origin, direction;
+  vec3 origin, direction;  ///< flat components are 0
 
-  std::vector<Candidate> candidates(uint32_t voxel, uint32_t excluded) const {
-    std::vector<Candidate> all;
+  /// Whether surface can be where the ray crosses the plane: `before` of `whole` of the way `passage` from `entry` (from the mean on).
+  bool covers(uint32_t largest, const vec3& n, const vec3& mean, const vec3& entry, const vec3& passage, float before, float whole) const {
+    const shared::Face& face = s.faces[largest];
+    const vec3 a = glm::abs(n);
+    uint32_t axis = 0;
+    for (uint32_t k = 1; k < 3; ++k) axis = a[k] > a[axis] ? k : axis;
+    float cover = 1.f;
     for (uint32_t k = 0; k < 3; ++k) {
-      const float d = std::fabs(direction[k]) < kFlat ? 0.f : direction[k];
-      if (d == 0.f) continue;
-      const uint32_t facing = 2 * k + (d > 0.f ? 1 : 0);
-      const bool front = s.hasFace(voxel, facing);
-      const uint32_t f = front ? facing : facing ^ 1u;
-      if (!s.hasFace(voxel, f) || ((excluded >> f) & 1u) != 0) continue;
-      const uint32_t face = s.faceIndex(voxel, f);
-      all.push_back({face, front, facing, s.faces[face].area * std::fabs(d)});
+      if (k != axis) cover *= 2.0f * std::min(mean[k], 1.0f - mean[k]);
     }
-    return all;
-  }
-
-  bool covers(const Candidate& c, const vec3& mean, const vec3& center, const vec3& in, const vec3& out, float before, float behind) const {
-    const shared::Face& face = s.faces[c.face];
-    const uint32_t axis = c.facing >> 1;
-    vec3 sides(1.f), reach;
+    if (face.area > shared::kCoverFull || cover < 0.98f * face.area) return true;
     for (uint32_t k = 0; k < 3; ++k) {
-      reach[k] = std::min(mean[k], 1.0f - mean[k]);
-      if (k != axis) sides[k] = 2.0f * reach[k];
-    }
-    if (face.area > 0.95f || sides.x * sides.y * sides.z < 0.98f * face.area) return true;
-    const float whole = before + behind;
-    for (uint32_t k = 0; k < 3; ++k) {
-      if (k == axis) continue;
-      const float offset = (in[k] - center[k]) * whole + (out[k] - in[k]) * before;
-      if (std::fabs(offset) > (reach[k] + 0.05f) * whole) return false;
+      const float reach = (std::min(mean[k], 1.0f - mean[k]) + 0.05f) * whole;
+      if (k != axis && std::fabs(entry[k] * whole + passage[k] * before) > reach) return false;
     }
     return true;
   }
 
-  /// kOracleMiss: the ray goes on.
-  uint32_t cast(const VoxelVisit& visit, uint32_t excluded, uint32_t& inFront, uint32_t random) const {
+  /// kOracleMiss: the ray goes on. `own`: planes that do not count.
+  uint32_t cast(const VoxelVisit& visit, uint32_t own, uint32_t& inFront, uint32_t random) const {
     const uint32_t was = inFront;
     inFront = 0;
     const uint32_t voxel = s.voxelIndex(visit.voxel);
     if (voxel == shared::kNone) return kOracleMiss;
-    const vec3 in = origin + visit.entry * direction, out = origin + visit.exit * direction;
-    std::array<Candidate, 3> hits{};
-    bool back = false;
-    for (const Candidate& c : candidates(voxel, excluded)) {
-      bool hit = true;
+    const vec3 in = origin + visit.entry * direction, passage = (origin + visit.exit * direction) - in;
+    const auto facing = [&](uint32_t k) { return 2 * k + (direction[k] > 0.f ? 1u : 0u); };
+    uint32_t bit = 1;
+    bool found = false;
+    float bestBefore = 0.f, bestWhole = 0.f;
+    vec3 bestNormal(0.f);
+    uint32_t bestFaces = 0;
+    for (const OraclePlane& plane : planesOf(s, voxel)) {
+      const bool counts = (own & bit) == 0;
+      bit *= 2;
+      if (!counts) continue;
+      const vec3 mean = shared::decodePosition(s.faces[plane.largest].position);
+      vec3 n = plane.normal(s);
+      if (dot(direction, n) > 0.f) n = -n;
+      uint32_t looks = 0;
+      for (uint32_t k = 0; k < 3; ++k) looks |= n[k] * direction[k] < 0.f ? 1u << facing(k) : 0u;
+      float before = 0.f, whole = 1.f;
+      bool hit = looks != 0;
       if (!voxelHit) {
-        const vec3 mean = shared::decodePosition(s.faces[c.face].position);
-        const vec3 center = vec3(visit.voxel) + mean;
-        const vec3 n = planeNormal(s.faces[c.face].normal) * (c.front ? 1.f : -1.f);
-        const float before = dot(in - center, n), after = dot(out - center, n);
-        if (after >= -1e-3f) inFront |= 1u << c.facing;
-        const bool cameFromFront = before >= 0.f || ((was >> c.facing) & 1u) != 0;
-        hit = dot(direction, n) < 0.f && after <= 0.f && cameFromFront && covers(c, mean, center, in, out, std::max(before, 0.f), -after);
+        const vec3 entry = in - vec3(visit.voxel) - mean;
+        before = dot(entry, n);
+        const float after = dot(entry + passage, n);
+        hit = hit && after <= 0.f && (before >= 0.f || (was & looks) != 0);
+        if (after >= -1e-3f) inFront |= looks;
+        before = std::max(before, 0.f);
+        whole = before - after;
+        hit = hit && covers(plane.largest, n, mean, entry, passage, before, whole) && whole > 0.f;
       }
-      if (!hit) continue;
-      if (c.front) {
-        hits[c.facing >> 1] = c;
-      } else {
-        back = true;
+      if (hit && (!found || before * bestWhole < bestBefore * whole)) {
+        found = true;
+        bestBefore = before;
+        bestWhole = whole;
+        bestNormal = n;
+        bestFaces = (plane.faces & looks) != 0 ? plane.faces & looks : s.mask[voxel] & looks;
       }
     }
-    const float two = hits[0].weight + hits[1].weight;
-    const float total = two + hits[2].weight;
-    if (!(total > 0.f)) return back ? kOracleAbsorbed : kOracleMiss;
+    if (!found) return kOracleMiss;
+    if (bestFaces == 0) return kOracleAbsorbed;
+    float weight[3];
+    for (uint32_t k = 0; k < 3; ++k) weight[k] = ((bestFaces >> facing(k)) & 1u) != 0 ? std::fabs(bestNormal[k] * direction[k]) : 0.f;
+    const float two = weight[0] + weight[1];
+    const float total = two + weight[2];
     const float draw = static_cast<float>(random >> 8) * (1.0f / 16777216.0f) * total;
-    if (draw < hits[0].weight) return hits[0].face;
-    if (draw >= two && hits[2].weight > 0.f) return hits[2].face;
-    return hits[1].weight > 0.f ? hits[1].face : hits[0].face;
+    uint32_t k = weight[1] > 0.f ? 1 : 0;
+    if (draw < weight[0]) {
+      k = 0;
+    } else if (draw >= two && weight[2] > 0.f) {
+      k = 2;
+    }
+    return s.faceIndex(voxel, facing(k));
   }
 };
 
-/// Faces of the voxel on the plane through `position`.
-uint32_t ownFaces(const VoxelStructures& s, uint32_t voxel, const vec3& position, const vec3& normal) {
-  uint32_t own = 0;
-  for (uint32_t f = 0; f < shared::kFaceCount; ++f) {
-    if (!s.hasFace(voxel, f)) continue;
-    const uint32_t face = s.faceIndex(voxel, f);
-    const bool onPlane = std::fabs(dot(s.facePosition(face) - position, normal)) < 0.25f;
-    if (onPlane && std::fabs(dot(shared::decodeNormal(s.faces[face].normal), normal)) > 0.82f) own |= 1u << f;
+/// Planes of the voxel that lie on the plane through `position`, bit by bit in order.
+uint32_t ownPlanes(const VoxelStructures& s, uint32_t voxel, const vec3& position, const vec3& normal) {
+  uint32_t own = 0, bit = 1;
+  for (const OraclePlane& plane : planesOf(s, voxel)) {
+    const bool onPlane = std::fabs(dot(s.facePosition(plane.largest) - position, normal)) < 0.25f;
+    const vec3 n = plane.normal(s);
+    const float along = dot(n, normal);
+    if (onPlane && along * along > 0.82f * 0.82f * dot(n, n)) own |= bit;
+    bit *= 2;
   }
   return own;
 }
@@ -247,7 +270,7 @@ RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& setti
 
   const vec3 origin = settings.axisFrame ? vec3(coordinate) + 0.5f + 0.5f * axis : shared::liftedOrigin(position, n, coordinate);
   const Caster caster{s, settings.voxelHit, origin, direction};
-  const uint32_t excluded = settings.voxelHit ? 0x3fu : ownFaces(s, key >> 3, position, n);
+  const uint32_t excluded = settings.voxelHit ? 0x3fu : ownPlanes(s, key >> 3, position, n);
   walkVoxels(s.grid.size, origin, direction, start, [&](const VoxelVisit& visit) {
     const bool atOwn = !settings.axisFrame && visit.voxel == own;
     result.face = caster.cast(visit, atOwn ? excluded : 0u, inFront, random);

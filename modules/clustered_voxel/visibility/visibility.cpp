@@ -59,6 +59,9 @@ void Visibility::declare(graph::Declaration& d) {
   d.write("entries", {}, "id | (count − 1) << 24, a row after the other").growable = true;
   d.write("clearance", {}, "u8 per voxel and rim: half-size of the empty cube around it").growable = true;
   d.write("clearance_work", {}, "between two passes; freed at once").growable = true;
+  // Planes are as many as faces at most, and a voxel without faces has the place of one.
+  d.write("planes", Shape::buffer(8, faces + 1), "what rays are stopped by: shared/voxel_plane.h");
+  d.write("plane_extras", Shape::buffer(4, Extent::of("voxels")), "where the planes of a voxel after its first are");
   d.publishCount("entries", "", 0);
   d.hostPaced();
   const uint64_t rows = kRowsPerChunk;
@@ -67,6 +70,8 @@ void Visibility::declare(graph::Declaration& d) {
   d.scratch("table", Shape::buffer(4, rows << tableBits(rays_)), "hash table a row");
   d.scratch("offsets", Shape::buffer(4, rows + 1), "distinct ids a row, then their exclusive sums");
   d.scratch("total", Shape::buffer(4, 2), "entries of the chunk");
+  // Scan::scratchBytes is a word a block, on every level.
+  d.scratch("plane_scan", Shape::buffer(4, Extent::of("voxels") / 512 + 1024), "scan");
   d.scratch("scan", Shape::buffer(1, gpu::Scan::scratchBytes(rows + 1)), "scan");
 }
 
@@ -81,12 +86,14 @@ void Visibility::prepare(graph::PrepareContext& context) {
                                                           .pushConstantBytes = pushBytes,
                                                           .constants = std::move(constants)});
   };
+  countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
+  planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
   sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 2, 8, {});
   merge_ = make("clustered_voxel/visibility/merge.comp", 4, 16, {});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
   if (traversal_ == Traversal::Bresenham) {
-    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", 12, 16, {{2, frame}});
+    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", 13, 20, {{2, frame}});
   } else {
     const auto hit = static_cast<uint32_t>(hit_);
     if (skip_ == Skip::Clearance) {
@@ -95,8 +102,8 @@ void Visibility::prepare(graph::PrepareContext& context) {
       clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
-    trace_ = make("clustered_voxel/visibility/trace.comp", 12, 16, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}});
-    if (skip_ == Skip::Clearance) traceBricks_ = make("clustered_voxel/visibility/trace.comp", 12, 16, {{0, 1}, {1, hit}, {2, frame}});
+    trace_ = make("clustered_voxel/visibility/trace.comp", 13, 20, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}});
+    if (skip_ == Skip::Clearance) traceBricks_ = make("clustered_voxel/visibility/trace.comp", 13, 20, {{0, 1}, {1, hit}, {2, frame}});
   }
   const std::vector<glm::vec3> directions = makeDirections(rays_);
   directions_ = gpu::Buffer(device, "visibility directions", directions.size() * sizeof(glm::vec3));
@@ -125,7 +132,10 @@ void Visibility::record(graph::RecordContext& context) {
     return;
   }
   context.commands().barrier();
-  if (step == 1 && usesClearance()) recordClearance(context);
+  if (step == 1) {
+    recordPlanes(context);
+    if (usesClearance()) recordClearance(context);
+  }
   if (step > 1) recordFill(context, step - 2);
   if (step <= chunkCount(context)) recordTrace(context, step - 1);
 }
@@ -176,6 +186,19 @@ void Visibility::begin(graph::RecordContext& context) {
   context.grow("clearance_work", clearanceBytes(grid_));
 }
 
+void Visibility::recordPlanes(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto voxels = static_cast<uint32_t>(context.count("voxels"));
+  const gpu::Buffer& extras = context.buffer("plane_extras");
+  for (const gpu::Pipeline* pipeline : {&countPlanes_, &planes_}) {
+    commands.bind(*pipeline, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), context.buffer("planes"), extras});
+    commands.push(voxels);
+    commands.dispatchItems(voxels, 64);
+    commands.barrier();
+    if (pipeline == &countPlanes_) scan_->scan(commands, extras, extras, voxels, context.buffer("plane_scan"));
+  }
+}
+
 void Visibility::recordClearance(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& result = *context.grown("clearance").at(0);
@@ -212,13 +235,15 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   struct {
     uint32_t firstFace, rowCount, rayCount;
     float nearDistance;
-  } tracePush{firstFace, rows, rays_, near_};
+    uint32_t voxelCount;
+  } tracePush{firstFace, rows, rays_, near_, static_cast<uint32_t>(context.count("voxels"))};
   // An absent clearance is never read.
   const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
   const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
-  commands.bind(bricks ? traceBricks_ : trace_, {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"),
-                                                 context.buffer("voxels"), context.buffer("distance"), context.buffer("mask"),
-                                                 context.buffer("first"), context.buffer("faces"), clearance, directions_, order, hits});
+  commands.bind(bricks ? traceBricks_ : trace_,
+                {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("voxels"),
+                 context.buffer("distance"), context.buffer("planes"), context.buffer("first"), context.buffer("faces"), clearance,
+                 directions_, order, hits, context.buffer("plane_extras")});
   commands.push(tracePush);
   const uint32_t lanes = (rows + 63) / 64 * 64;
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);

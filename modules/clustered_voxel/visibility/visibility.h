@@ -5,6 +5,7 @@
 //         entries+ u32                                rows, a buffer a chunk: shared/voxel.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
 //         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
+//         planes uvec2 × F, plane_extras u32 × V      what rays are stopped by (shared/voxel_plane.h)
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
 // cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
@@ -50,6 +51,7 @@ class Visibility : public graph::Node {
   uint32_t rowCount(graph::RecordContext& context, uint32_t chunk) const;
   bool usesClearance() const { return traversal_ == Traversal::Dda && skip_ == Skip::Clearance && !clearanceTooLarge_; }
   void begin(graph::RecordContext& context);
+  void recordPlanes(graph::RecordContext& context);
   void recordClearance(graph::RecordContext& context);
   void recordTrace(graph::RecordContext& context, uint32_t chunk);
   void recordFill(graph::RecordContext& context, uint32_t chunk);
@@ -62,7 +64,7 @@ class Visibility : public graph::Node {
   float near_ = 8.f;
   params::Table table_;
 
-  gpu::Pipeline clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, trace_, traceBricks_, merge_, fill_;
+  gpu::Pipeline countPlanes_, planes_, clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, trace_, traceBricks_, merge_, fill_;
   gpu::Buffer directions_;
   std::unique_ptr<gpu::Scan> scan_;
   shared::Grid grid_{};

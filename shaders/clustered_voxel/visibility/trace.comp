@@ -13,12 +13,14 @@ layout(constant_id = 2) const uint kFrame = 0;  // 0: about n_s from x_s; 1: abo
 #define RADIVOX_BIND_RANK 2
 #define RADIVOX_BIND_VOXELS 3
 #define RADIVOX_BIND_DISTANCE 4
-#define RADIVOX_BIND_FACE_MASK 5
-#define RADIVOX_BIND_FIRST_FACE 6
+#define RADIVOX_BIND_PLANES 5
+#define RADIVOX_BIND_CAST_FIRST 6
 #define RADIVOX_BIND_FACES 7
 #define RADIVOX_BIND_CLEARANCE 8
 #define RADIVOX_SKIP kSkip
 #define RADIVOX_HIT kHit
+#define RADIVOX_BIND_PLANE_EXTRAS 12
+#define RADIVOX_VOXEL_COUNT voxelCount
 layout(set = 0, binding = 9, scalar) readonly buffer Directions { vec3 directions[]; };  // M a rotation
 layout(set = 0, binding = 10, scalar) readonly buffer Order { uint order[]; };          // rows of the chunk as lanes take them
 layout(set = 0, binding = 11, scalar) writeonly buffer Hits { uint hits[]; };            // M a row
@@ -27,12 +29,14 @@ layout(push_constant, scalar) uniform Push {
   uint rowCount;
   uint rayCount;
   float nearDistance;  // voxels; hits up to here keep their face
+  uint voxelCount;
 };
 #include "clustered_voxel/visibility/visibility.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_cast.glsl"
 
 void main() {
+  castBegin();
   uint lanes = (rowCount + 63u) & ~63u;
   uint item = radivoxItemIndex();
   uint slot = item % lanes;
@@ -55,8 +59,7 @@ void main() {
     start += n;
     origin = vec3(coordinate) + 0.5 + 0.5 * n;
   } else if (kHit == kHitPlane) {
-    excluded = ownFaces(startVoxel, coordinate, position, n);
-    crowded = (faceMasks[startVoxel] & ~excluded) != 0u;
+    excluded = ownPlanes(startVoxel, coordinate, position, n, crowded);
   }
   uint table = rotationOf(s) * rayCount;
 

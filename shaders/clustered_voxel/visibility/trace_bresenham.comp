@@ -10,11 +10,13 @@ layout(constant_id = 2) const uint kFrame = 1;
 #define RADIVOX_BIND_OCCUPANCY 1
 #define RADIVOX_BIND_RANK 2
 #define RADIVOX_BIND_VOXELS 3
-#define RADIVOX_BIND_FACE_MASK 5
-#define RADIVOX_BIND_FIRST_FACE 6
+#define RADIVOX_BIND_PLANES 5
+#define RADIVOX_BIND_CAST_FIRST 6
 #define RADIVOX_BIND_FACES 7
 #define RADIVOX_SKIP kSkipNothing
 #define RADIVOX_HIT kHitVoxel
+#define RADIVOX_BIND_PLANE_EXTRAS 12
+#define RADIVOX_VOXEL_COUNT voxelCount
 layout(set = 0, binding = 9, scalar) readonly buffer Directions { vec3 directions[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer Order { uint order[]; };
 layout(set = 0, binding = 11, scalar) writeonly buffer Hits { uint hits[]; };
@@ -23,12 +25,14 @@ layout(push_constant, scalar) uniform Push {
   uint rowCount;
   uint rayCount;
   float nearDistance;
+  uint voxelCount;
 };
 #include "clustered_voxel/visibility/visibility.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_cast.glsl"
 
 void main() {
+  castBegin();
   uint lanes = (rowCount + 63u) & ~63u;
   uint item = radivoxItemIndex();
   uint slot = item % lanes;
