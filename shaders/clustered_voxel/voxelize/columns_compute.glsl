@@ -27,8 +27,8 @@ void main() {
   uint columnCount = extent.x * extent.y;
   uint itemCount = itemCountOf(t);
   uint run = (columnCount + itemCount - 1u) / itemCount;
-  uint first = (item - firstItems[triangle]) * run;
-  uint last = min(first + run, columnCount);
-  for (uint column = first; column < last; ++column)
-    visitColumn(t, t.low.xy + ivec2(column % extent.x, column / extent.x));
+  uint first = min((item - firstItems[triangle]) * run, columnCount);
+  Walk walk = walkColumns(first, min(first + run, columnCount));
+  ivec3 voxel;
+  while (findVoxel(t, walk, voxel)) visitVoxel(t, voxel);
 }

@@ -15,8 +15,6 @@ layout(location = 0) flat out uint triangleId;
 // Pixels; bears the rasterizer's snapping to 1/256 and our own rounding. The columns' own test decides.
 const float kMargin = 0.02;
 
-void visitVoxel(Triangle t, ivec3 voxel) {}
-
 void main() {
   Triangle t = loadTriangle(vertexTriangleId[0]);
   if (!t.isValid) return;

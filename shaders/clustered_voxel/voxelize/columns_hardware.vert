@@ -8,8 +8,6 @@
 
 layout(location = 0) flat out uint triangleId;
 
-void visitVoxel(Triangle t, ivec3 voxel) {}
-
 void main() {
   triangleId = uint(gl_VertexIndex) / 3u;
   uint corner = uint(gl_VertexIndex) % 3u;

@@ -3,5 +3,11 @@ layout(location = 0) flat in uint triangleId;
 
 void main() {
   Triangle t = loadTriangle(triangleId);
-  if (t.isValid) visitColumn(t, ivec2(gl_FragCoord.xy));
+  ivec2 column = ivec2(gl_FragCoord.xy);
+  // Fragments are more than the triangle's columns where the rasterizer is conservative.
+  if (!t.isValid || any(lessThan(column, t.low.xy)) || any(greaterThan(column, t.high.xy))) return;
+  uint index = uint(column.x - t.low.x) + uint(t.high.x - t.low.x + 1) * uint(column.y - t.low.y);
+  Walk walk = walkColumns(index, index + 1u);
+  ivec3 voxel;
+  while (findVoxel(t, walk, voxel)) visitVoxel(t, voxel);
 }

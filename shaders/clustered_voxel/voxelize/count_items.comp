@@ -9,8 +9,6 @@
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 3, scalar) writeonly buffer ItemCounts { uint itemCounts[]; };
 
-void visitVoxel(Triangle t, ivec3 voxel) {}
-
 void main() {
   uint triangle = radivoxItemIndex();
   if (triangle >= triangleCount) return;

@@ -13,16 +13,18 @@ layout(set = 0, binding = 4, scalar) readonly buffer TriangleMaterials { uint tr
 layout(set = 0, binding = 5, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer Textures { Texture textures[]; };
 
-const uint kMaskedPoints = 16u;   // a sixteenth of a piece is the least that an alpha mask leaves or takes
-const uint kTexturedPoints = 4u;
+// Points a side of the grid laid over the piece's bounds; about half of them fall on the piece.
+const uint kMaskedSide = 6u;
+const uint kTexturedSide = 2u;
 
-// Mip level whose texels are about as large as a point's share of the piece.
-uint levelOf(Triangle t, Piece piece, uint count, vec2 uv[3], uint texture_) {
+// Mip level whose texels are about as large as a point's share of the piece's bounds.
+uint levelOf(Triangle t, Piece piece, uint side, vec2 uv[3], uint texture_) {
   precise vec2 a = uv[1] - uv[0];
   precise vec2 b = uv[2] - uv[0];
   precise float texels = abs(a.x * b.y - a.y * b.x) * float(textures[texture_].width) * float(textures[texture_].height);
-  // Of the triangle's parallelogram, whose area is |normal|.
-  precise float share = piece.area * abs(piece.normal.z) * preciseReciprocal(abs(t.normal.z)) / float(count);
+  // Of the triangle's parallelogram, whose area along the dominant axis is normal.z.
+  precise vec2 cell = (piece.high - piece.low) * preciseReciprocal(float(side));
+  precise float share = cell.x * cell.y * preciseReciprocal(abs(t.normal.z));
   precise float texelsPerPoint = texels * share;
   int exponent = int(floatBitsToUint(texelsPerPoint) >> 23) - 127;  // floor(log₂)
   return min(uint(max(exponent, 0)) / 2u, textures[texture_].levelCount - 1u);
@@ -57,23 +59,34 @@ Surface surfaceOf(Triangle t, ivec3 voxel, Piece piece, uint material) {
     uvEmissive[c] = vertices[vertex].uvEmissive;
   }
   isMasked = isMasked && base != kNoTexture;
-  uint count = isMasked ? kMaskedPoints : kTexturedPoints;
+  uint side = isMasked ? kMaskedSide : kTexturedSide;
   // A mask is cut at its finest level: averaged alpha would thicken or lose thin leaves.
-  uint levelBase = base == kNoTexture || isMasked ? 0u : levelOf(t, piece, count, uvBase, base);
-  uint levelEmissive = emissive == kNoTexture ? 0u : levelOf(t, piece, count, uvEmissive, emissive);
-  uint covered = 0u;
+  uint levelBase = base == kNoTexture || isMasked ? 0u : levelOf(t, piece, side, uvBase, base);
+  uint levelEmissive = emissive == kNoTexture ? 0u : levelOf(t, piece, side, uvEmissive, emissive);
+  vec3 corner = cornerInVoxel(t, 0u, voxel);
+  vec3 slopes = scaledNormal(t);
+  uint met = 0u, covered = 0u;
   precise vec3 albedo = vec3(0.0);
   precise vec3 emission = vec3(0.0);
   precise vec3 point = vec3(0.0);
-  for (uint s = 0u; s < count; ++s) {
-    vec3 at = pointOnPiece(piece, s, count);
+  // The last round stands in for pieces too small for the grid: their centroid.
+  for (uint s = 0u; s < side * side + 1u; ++s) {
+    bool isLast = s == side * side;
+    if (isLast && met > 0u) break;
+    precise vec2 at = piece.low + (piece.high - piece.low) * ((vec2(s % side, s / side) + 0.5) * preciseReciprocal(float(side)));
+    if (isLast) at = piece.middle.xy;
     vec2 weights = barycentricOf(t, voxel, at);
+    float height = planeHeight(corner, slopes, at);
+    bool isOn = weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0 && height >= 0.0 && height <= 1.0;
+    if (!isOn && !isLast) continue;
+    weights = clampToTriangle(weights);
+    ++met;
     vec4 texel = base == kNoTexture ? vec4(1.0) : sampleTextureLevel(textures[base], interpolate(uvBase, weights), levelBase);
     precise float alpha = texel.a * materials[material].alpha;
     if (isMasked && alpha < materials[material].alphaCutoff) continue;
     ++covered;
     albedo = albedo + texel.rgb;
-    point = point + at;
+    point = point + vec3(at, clamp(height, 0.0, 1.0));
     if (emissive != kNoTexture)
       emission = emission + sampleTextureLevel(textures[emissive], interpolate(uvEmissive, weights), levelEmissive).rgb;
   }
@@ -89,8 +102,9 @@ Surface surfaceOf(Triangle t, ivec3 voxel, Piece piece, uint material) {
     precise vec3 meanEmission = surface.emission * (emission * scale);
     surface.emission = meanEmission;
   }
-  if (isMasked) {
-    surface.coverage = float(covered) / float(count);  // count is a power of two: exact
+  if (isMasked && covered < met) {
+    precise float coverage = float(covered) * preciseReciprocal(float(met));
+    surface.coverage = coverage;
     surface.point = meanPoint;
   }
   return surface;

@@ -21,7 +21,7 @@ layout(set = 0, binding = 18, scalar) buffer AngleSums { uint angleSums[]; };   
 #include "clustered_voxel/voxelize/emission_scale.glsl"
 
 vec3 shadingNormal(Triangle t, ivec3 turned, Piece piece, vec3 geometric) {
-  vec2 weights = barycentricOf(t, turned, piece.middle);
+  vec2 weights = clampToTriangle(barycentricOf(t, turned, piece.middle.xy));
   vec3 n0 = vertices[indices[3u * t.id]].normal;
   vec3 n1 = vertices[indices[3u * t.id + 1u]].normal;
   vec3 n2 = vertices[indices[3u * t.id + 2u]].normal;

@@ -137,28 +137,52 @@ bool isSeparatedByBounds(Triangle t, vec3 centre) {
   return any(greaterThan(least, vec3(radius))) || any(lessThan(most, vec3(-radius)));
 }
 
-// What a stage does with a triangle and a voxel that it overlaps; defined by the including shader. `voxel` is turned, as `t` is.
-void visitVoxel(Triangle t, ivec3 voxel);
+// The columns first…last − 1 of a triangle's rectangle of columns (row by row), and where we are in them. Each (triangle, voxel) pair is met
+// once, whichever way the columns are cut up.
+struct Walk {
+  uint column;  // next one
+  uint last;
+  ivec3 voxel;  // next one to test; z past lastZ: the column is done
+  int lastZ;
+};
 
-// Visits the voxels of one column along z. Each (triangle, voxel) pair is met once, whichever way the columns are found.
-void visitColumn(Triangle t, ivec2 column) {
-  if (any(lessThan(column, t.low.xy)) || any(greaterThan(column, t.high.xy))) return;
-  vec3 centre = vec3(vec2(column) + 0.5, 0.0);
+Walk walkColumns(uint first, uint last) { return Walk(first, last, ivec3(0, 0, 1), 0); }
+
+// Which voxels of the column the triangle's plane may pass. Nothing where its edges part the triangle from the whole column.
+void enterColumn(Triangle t, inout Walk walk) {
+  uint width = uint(t.high.x - t.low.x + 1);
+  walk.voxel.xy = t.low.xy + ivec2(walk.column % width, walk.column / width);
+  ++walk.column;
+  vec3 centre = vec3(vec2(walk.voxel.xy) + 0.5, 0.0);
   if (isSeparatedAlong(t, 2u, centre)) return;
-  int first = t.low.z, last = t.high.z;
+  walk.voxel.z = t.low.z;
+  walk.lastZ = t.high.z;
   if (t.hasPlane) {
-    // Where the plane passes the column; slopes are at most 1. Only a guess at the range (0.02 bears its rounding): the tests decide.
+    // Slopes are at most 1. Only a guess at the range (0.02 bears its rounding): the tests decide.
     vec2 slope = -t.normal.xy / t.normal.z;
     float middle = t.p[0].z + dot(slope, centre.xy - t.p[0].xy);
     float reach = 0.5 * (abs(slope.x) + abs(slope.y)) + 0.02;
-    first = max(first, int(ceil(clamp(middle - reach, -2.0, 2048.0))) - 1);
-    last = min(last, int(floor(clamp(middle + reach, -2.0, 2048.0))));
+    walk.voxel.z = max(walk.voxel.z, int(ceil(clamp(middle - reach, -2.0, 2048.0))) - 1);
+    walk.lastZ = min(walk.lastZ, int(floor(clamp(middle + reach, -2.0, 2048.0))));
   }
-  for (int z = first; z <= last; ++z) {
-    centre.z = float(z) + 0.5;
+}
+
+// Goes on to the next voxel that the triangle overlaps; false when there is none left. Kept apart from what a stage does with the voxel, so that
+// lanes wait for each other before the costly part and not within the search.
+bool findVoxel(Triangle t, inout Walk walk, out ivec3 found) {
+  found = ivec3(0);
+  while (true) {
+    if (walk.voxel.z > walk.lastZ) {
+      if (walk.column >= walk.last) return false;
+      enterColumn(t, walk);
+      continue;
+    }
+    vec3 centre = vec3(walk.voxel) + 0.5;
+    found = walk.voxel;
+    ++walk.voxel.z;
     if (!isSeparatedByBounds(t, centre) && !isSeparatedByPlane(t, centre) && !isSeparatedAlong(t, 0u, centre) &&
         !isSeparatedAlong(t, 1u, centre))
-      visitVoxel(t, ivec3(column, z));
+      return true;
   }
 }
 
