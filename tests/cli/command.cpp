@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto kTimeLimit = std::chrono::minutes(2);
-
 struct Pipe {
   int read = -1, write = -1;
   Pipe() {
@@ -74,7 +72,7 @@ CommandResult runRadivox(const std::vector<std::string>& arguments, const Comman
       signalled = true;
       ::kill(child, setup.signal);
     }
-    if (elapsed > kTimeLimit) ::kill(child, SIGKILL);
+    if (elapsed > std::chrono::seconds(setup.timeLimitSeconds)) ::kill(child, SIGKILL);
   }
   int status = 0;
   ::waitpid(child, &status, 0);

@@ -21,9 +21,9 @@ struct CommandSetup {
   std::filesystem::path folder;                    ///< to run in; empty: ours
   int signalAfterMs = 0;                           ///< when to send `signal`; 0: never
   int signal = 0;
+  int timeLimitSeconds = 120;  ///< the process is ended then
 };
 
-/// Ends the process after two minutes.
 CommandResult runRadivox(const std::vector<std::string>& arguments, const CommandSetup& setup = {});
 
 /// A folder of its own for each test.

@@ -1,0 +1,21 @@
+# radivox_extract(README NAME OUTPUT): the code block after the line "<!-- file: NAME -->" of a README, as a file, so that what is printed is
+# what is tested.
+function(radivox_extract readme name output)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${readme})
+  file(READ ${readme} text)
+  string(FIND "${text}" "<!-- file: ${name} -->" begin)
+  if(begin LESS 0)
+    message(FATAL_ERROR "${readme}: no file ${name}; mark its code block with <!-- file: ${name} -->")
+  endif()
+  string(SUBSTRING "${text}" ${begin} -1 rest)
+  # From the line after the opening fence to the closing one.
+  string(FIND "${rest}" "\n```" fence)
+  math(EXPR fence "${fence} + 4")
+  string(SUBSTRING "${rest}" ${fence} -1 rest)
+  string(FIND "${rest}" "\n" line)
+  math(EXPR line "${line} + 1")
+  string(FIND "${rest}" "\n```" end)
+  math(EXPR length "${end} - ${line} + 1")
+  string(SUBSTRING "${rest}" ${line} ${length} content)
+  file(CONFIGURE OUTPUT ${output} CONTENT "${content}" @ONLY)
+endfunction()
