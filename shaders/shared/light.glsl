@@ -5,14 +5,13 @@
 
 // The ray through a point of a shadow view, from the light; `ndc` in [−1, 1]². d is unit.
 void shadowRay(ShadowView view, Light light, vec2 ndc, out vec3 origin, out vec3 d) {
-  vec4 near = view.inverseViewProjection * vec4(ndc, 1.0, 1.0);
-  vec3 nearPoint = near.xyz / near.w;
   if (light.type == kLightDirectional) {
-    origin = nearPoint;
+    vec4 near = view.inverseViewProjection * vec4(ndc, 1.0, 1.0);
+    origin = near.xyz / near.w;
     d = light.direction;
   } else {
     origin = view.origin;
-    d = normalize(nearPoint - origin);
+    d = normalize((view.inverseViewProjection * vec4(ndc, 0.0, 1.0)).xyz);  // depth 0 is infinity
   }
 }
 
@@ -41,8 +40,7 @@ vec3 lightIntensity(Light light, vec3 d) {
 vec3 shadowTexelFlux(ShadowView view, Light light, vec3 d, vec3 p) {
   if (light.type == kLightDirectional) return light.intensity * view.texelFlux;
   // The texel is a patch of area texelFlux on the plane at distance 1 along the view's axis: dω = area · cos³.
-  vec4 centre = view.inverseViewProjection * vec4(0.0, 0.0, 1.0, 1.0);
-  vec3 axis = normalize(centre.xyz / centre.w - view.origin);
+  vec3 axis = normalize((view.inverseViewProjection * vec4(0.0, 0.0, 0.0, 1.0)).xyz);
   float c = dot(axis, d);
   return lightIntensity(light, d) * (view.texelFlux * c * c * c * rangeWindow(light, distance(p, view.origin)));
 }

@@ -62,8 +62,9 @@ struct Light {
 };
 
 // One view of a light: a square tile of resolution² texels at (offsetX, offsetY) of a shadow map layer. viewProjection fills the tile
-// with clip space [−1, 1]² (texel = offset + (ndc·0.5 + 0.5)·resolution). Views of a light meet at their edges without overlap. The map stores
-// depth (reversed z) and triangle id + 1 of the nearest surface seen from the light.
+// with clip space [−1, 1]² (texel = offset + (ndc·0.5 + 0.5)·resolution). Views of a light meet at their edges without overlap. Perspective
+// views end nowhere: inverseViewProjection · (ndc, 0, 1) is the direction of a ray, exact where a difference of points would cancel.
+// The map stores depth (reversed z) and triangle id + 1 of the nearest surface seen from the light.
 struct ShadowView {
   mat4 viewProjection;   // relative world metres → clip, reversed z
   mat4 inverseViewProjection;
