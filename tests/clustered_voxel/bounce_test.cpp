@@ -298,7 +298,7 @@ TEST_F(BounceTest, MoreBouncesThanIterationsIsAnError) {
   }
 }
 
-TEST_F(BounceTest, PlainIterationAgreesAndIsSlower) {
+TEST_F(BounceTest, PlainIterationAgreesAndTakesLonger) {
   const Case c = randomCase(200, 30, 0.9, 0.97, 0.0, 11);
   const Output fast = solve(c), plain = solve(c, scene::kAllBounces, false, {{"solver", "plain"}});
   checkConverged(c, fast, 2e-5);

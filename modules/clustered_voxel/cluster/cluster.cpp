@@ -71,11 +71,11 @@ void Cluster::declare(graph::Declaration& d) {
   d.scratch("face_cells", Shape::buffer(4, faces), "slot, then cell of each face");
   d.scratch("ranks", Shape::buffer(4, faces), "flags and their scan");
   d.scratch("cell_keys", Shape::buffer(4, faces), "packed coordinate of each cell");
-  d.scratch("cell_starts", Shape::buffer(4, faces + 1), "first face of each cell");
   d.scratch("cell_masks", Shape::buffer(4, faces), "dominant directions in each cell");
   d.scratch("first_seeds", Shape::buffer(4, faces), "first seed of each cell");
-  d.scratch("sorted", Shape::buffer(4, faces), "faces by cell; then union-find parents");
-  d.scratch("cursors", Shape::buffer(4, faces), "filling level of each cell; then pieces");
+  d.scratch("seed_starts", Shape::buffer(4, faces + 1), "first face of each seed, as planted");
+  d.scratch("sorted", Shape::buffer(4, faces), "faces by cell and direction; then union-find parents");
+  d.scratch("cursors", Shape::buffer(4, faces), "filling level of each seed's part; then pieces");
   d.scratch("seed_labels", Shape::buffer(4, faces), "seed of each face, or none");
   d.scratch("seed_homes", Shape::buffer(4, faces), "packed home cell of each seed");
   d.scratch("seeds", Shape::buffer(24, faces), "position and normal of each seed");
@@ -91,16 +91,18 @@ void Cluster::prepare(graph::PrepareContext& context) {
   insertCells_ = makePipeline(device, "clustered_voxel/cluster/insert_cells.comp", 5);
   flagFounders_ = makePipeline(device, "clustered_voxel/cluster/flag_founders.comp", 3);
   numberCells_ = makePipeline(device, "clustered_voxel/cluster/number_cells.comp", 6);
-  countCells_ = makePipeline(device, "clustered_voxel/cluster/count_cells.comp", 5);
+  countCells_ = makePipeline(device, "clustered_voxel/cluster/count_cells.comp", 4);
   countSeeds_ = makePipeline(device, "clustered_voxel/cluster/count_seeds.comp", 2);
-  placeFaces_ = makePipeline(device, "clustered_voxel/cluster/place_faces.comp", 10);
+  labelFaces_ = makePipeline(device, "clustered_voxel/cluster/label_faces.comp", 8);
+  sortFaces_ = makePipeline(device, "clustered_voxel/cluster/sort_faces.comp", 4);
   arguments_ = makePipeline(device, "clustered_voxel/cluster/arguments.comp", 1);
   accumulate_ = makePipeline(device, "clustered_voxel/cluster/accumulate.comp", 6);
   updateSeeds_ = makePipeline(device, "clustered_voxel/cluster/update_seeds.comp", 5);
-  assign_ = makePipeline(device, "clustered_voxel/cluster/assign.comp", 12);
+  assign_ = makePipeline(device, "clustered_voxel/cluster/assign.comp", 15);
   decide_ = makePipeline(device, "clustered_voxel/cluster/decide.comp", 1);
   startPieces_ = makePipeline(device, "clustered_voxel/cluster/start_pieces.comp", 1);
-  connect_ = makePipeline(device, "clustered_voxel/cluster/connect.comp", 10);
+  connect_ = makePipeline(device, "clustered_voxel/cluster/connect.comp", 9);
+  connectOrphans_ = makePipeline(device, "clustered_voxel/cluster/connect_orphans.comp", 10);
   countPieces_ = makePipeline(device, "clustered_voxel/cluster/count_pieces.comp", 5);
   choose_ = makePipeline(device, "clustered_voxel/cluster/choose.comp", 12);
   mergePieces_ = makePipeline(device, "clustered_voxel/cluster/merge.comp", 3);
@@ -121,6 +123,7 @@ ClusterPush Cluster::makePush(uint32_t faceCount, uint32_t voxelCount) const {
   push.spaceScale = static_cast<float>(static_cast<double>(spaceWeight_) / (s * s));
   push.normalScale = static_cast<float>(static_cast<double>(normalWeight_) / (1.0 - std::cos(angle)));
   push.cosAngle = static_cast<float>(std::cos(angle));
+  push.sinAngle = static_cast<float>(std::sin(angle));
   // No seed has more members than the voxel faces of 27 cells.
   const double memberCount = std::min(162.0 * s * s * s, static_cast<double>(faceCount));
   const auto fits = [memberCount](double largest) { return memberCount * (largest + 1.0) < 2147483648.0; };
@@ -161,7 +164,7 @@ void Cluster::recordSeeds(graph::RecordContext& context, const ClusterPush& push
   const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
   commands.fill(b("slot_keys"), kNone);
   commands.fill(b("slot_cells"), kNone);
-  commands.fill(b("cell_starts"), 0);
+  commands.fill(b("seed_starts"), 0);
   commands.fill(b("cell_masks"), 0);
   commands.fill(b("cursors"), 0);
   commands.fill(b("moments"), 0);
@@ -172,14 +175,15 @@ void Cluster::recordSeeds(graph::RecordContext& context, const ClusterPush& push
   scan_->scan(commands, b("ranks"), b("ranks"), push.faceCount, b("scan"), &b("control"), offsetof(ClusterControl, cellCount));
   runItems(commands, numberCells_, {b("slot_keys"), b("slot_cells"), b("face_cells"), b("ranks"), b("cell_keys"), b("control")}, push,
            push.faceCount);
-  runItems(commands, countCells_, {b("faces"), b("slot_cells"), b("face_cells"), b("cell_starts"), b("cell_masks")}, push, push.faceCount);
+  runItems(commands, countCells_, {b("faces"), b("slot_cells"), b("face_cells"), b("cell_masks")}, push, push.faceCount);
   runItems(commands, countSeeds_, {b("cell_masks"), b("first_seeds")}, push, push.faceCount);
-  scan_->scan(commands, b("cell_starts"), b("cell_starts"), push.faceCount + 1, b("scan"));
   scan_->scan(commands, b("first_seeds"), b("first_seeds"), push.faceCount, b("scan"), &b("control"), offsetof(ClusterControl, seedCount));
-  runItems(commands, placeFaces_,
-           {b("faces"), b("face_cells"), b("cell_starts"), b("cursors"), b("cell_masks"), b("first_seeds"), b("cell_keys"), b("sorted"),
-            b("seed_labels"), b("seed_homes")},
-           push, push.faceCount);
+  runItems(
+      commands, labelFaces_,
+      {b("faces"), b("face_cells"), b("cell_masks"), b("first_seeds"), b("cell_keys"), b("seed_labels"), b("seed_homes"), b("seed_starts")},
+      push, push.faceCount);
+  scan_->scan(commands, b("seed_starts"), b("seed_starts"), push.faceCount + 1, b("scan"));
+  runItems(commands, sortFaces_, {b("seed_labels"), b("seed_starts"), b("cursors"), b("sorted")}, push, push.faceCount);
   runItems(commands, arguments_, {b("control")}, push, 1);
 }
 
@@ -187,17 +191,16 @@ void Cluster::recordIterations(graph::RecordContext& context, const ClusterPush&
   gpu::Commands& commands = context.commands();
   const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
   const gpu::Buffer& control = b("control");
+  runItems(commands, accumulate_, {b("voxels"), b("faces"), b("seed_labels"), b("seed_homes"), b("moments"), b("positions")}, push,
+           push.faceCount);
   for (uint32_t i = 0; i < push.iterationLimit; ++i) {
-    commands.bind(accumulate_, {b("voxels"), b("faces"), b("seed_labels"), b("seed_homes"), b("moments"), b("positions")});
-    commands.push(push);
-    commands.dispatchIndirect(control, offsetof(ClusterControl, faceGroups));
-    commands.barrier();
     commands.bind(updateSeeds_, {b("seed_homes"), b("moments"), b("positions"), b("seeds"), control});
     commands.push(push);
     commands.dispatchIndirect(control, offsetof(ClusterControl, seedGroups));
     commands.barrier();
-    commands.bind(assign_, {b("voxels"), b("faces"), b("slot_keys"), b("slot_cells"), b("cell_keys"), b("cell_starts"), b("cell_masks"),
-                            b("first_seeds"), b("sorted"), b("seeds"), b("seed_labels"), control});
+    commands.bind(assign_,
+                  {b("voxels"), b("faces"), b("slot_keys"), b("slot_cells"), b("cell_keys"), b("cell_masks"), b("first_seeds"),
+                   b("seed_starts"), b("sorted"), b("seeds"), b("seed_labels"), control, b("seed_homes"), b("moments"), b("positions")});
     commands.push(push);
     commands.dispatchIndirect(control, offsetof(ClusterControl, cellGroups));
     commands.barrier();
@@ -215,9 +218,12 @@ void Cluster::recordPieces(graph::RecordContext& context, const ClusterPush& pus
   const gpu::BoundResource links = partOf(b("positions"), 1, push.faceCount);
   commands.fill(small, 0);
   runItems(commands, startPieces_, {parents}, push, push.faceCount);
-  bindStructure(context, connect_, {b("voxels"), b("seed_labels"), b("face_cells"), parents});
+  bindStructure(context, connect_, {b("voxels"), b("seed_labels"), parents});
   commands.push(push);
   commands.dispatchItems(push.voxelCount, kGroup);
+  bindStructure(context, connectOrphans_, {b("voxels"), b("seed_labels"), b("face_cells"), parents});
+  commands.push(push);
+  commands.dispatchItems(push.faceCount, kGroup);
   commands.barrier();
   runItems(commands, countPieces_, {parents, b("seed_labels"), pieces, small, b("control")}, push, push.faceCount);
   for (uint32_t round = 0; round < kMergeRounds && push.mergeLimit > 0; ++round) {

@@ -5,7 +5,8 @@
 //         count   u32      clusters; publishes [clusters]
 //         status  ClusterControl (read back): cells, seeds, iterations, faces changed last, orphans, pieces, merges
 // runs    when the faces change
-// cost    O(F) memory (27 words a face of scratch); rounds · F · (seeds in 27 cells, about 30) distance tests; about 40 dispatches
+// cost    O(F) memory (27 words a face of scratch); a round tests each face against the seeds of 27 cells that face its way, and after the
+//         first few only against those that moved; 3 dispatches a round, about 40 besides
 // source  clustered_voxel_2022 section 4.2, algorithm 1 (its words; equation 1 has no distance in it); METHODS section 1, Cluster; SLIC
 //
 // Seeds: one per seed cell of spacing³ voxels and dominant direction of the normals in it, so that the two sides of a thin wall never
@@ -53,9 +54,9 @@ class Cluster : public graph::Node {
   uint32_t merge_ = shared::kMostMergeFaces;
   params::Table table_;
   std::unique_ptr<gpu::Scan> scan_;
-  gpu::Pipeline insertCells_, flagFounders_, numberCells_, countCells_, countSeeds_, placeFaces_, arguments_;
+  gpu::Pipeline insertCells_, flagFounders_, numberCells_, countCells_, countSeeds_, labelFaces_, sortFaces_, arguments_;
   gpu::Pipeline accumulate_, updateSeeds_, assign_, decide_;
-  gpu::Pipeline startPieces_, connect_, countPieces_, choose_, mergePieces_, relabel_;
+  gpu::Pipeline startPieces_, connect_, connectOrphans_, countPieces_, choose_, mergePieces_, relabel_;
   gpu::Pipeline lowestFaces_, flagLowest_, writeLabels_;
 };
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Dispatch arguments of the iterations: a group a cell, a lane a face, a lane a seed.
+// Dispatch arguments of the iterations: a group a cell, a lane a seed.
 #include "clustered_voxel/cluster/cluster_common.glsl"
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0, scalar) buffer Control { ClusterControl control; };
@@ -13,6 +13,5 @@ uvec3 foldGroups(uint groups) {
 
 void main() {
   control.cellGroups = foldGroups(control.cellCount);
-  control.faceGroups = foldGroups((push.faceCount + kClusterGroup - 1u) / kClusterGroup);
   control.seedGroups = foldGroups((control.seedCount + kClusterGroup - 1u) / kClusterGroup);
 }

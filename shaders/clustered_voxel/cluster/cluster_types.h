@@ -12,6 +12,7 @@ struct ClusterPush {
   float spaceScale;    // space weight / S²
   float normalScale;   // normal weight / (1 − cos angle)
   float cosAngle;      // faces whose normal is farther from a seed's are rejected
+  float sinAngle;
   uint positionShift;  // sums of positions are in units of 2^shift / 1023 voxels, so that they cannot wrap
   float normalUnit;    // sums of normals are in units of 1 / normalUnit, likewise
   uint orphanBins;     // direction bins a side of each cube face; two normals of one bin are within the angle
@@ -23,7 +24,6 @@ struct ClusterPush {
 // Indirect dispatch arguments of the iterations come first; they are zeroed when the clusters stand still.
 struct ClusterControl {
   uvec3 cellGroups;
-  uvec3 faceGroups;
   uvec3 seedGroups;
   uint cellCount;
   uint cellCountHigh;  // Scan's totals are two words

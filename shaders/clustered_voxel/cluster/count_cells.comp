@@ -1,21 +1,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Faces of each cell, and which dominant directions occur in it: each gets a seed.
+// Which dominant directions occur in each cell: each gets a seed.
 #include "clustered_voxel/cluster/cluster_common.glsl"
 #define RADIVOX_BIND_FACES 0
 #include "shared/voxel_lookup.glsl"
 layout(local_size_x = kClusterGroup) in;
 layout(set = 0, binding = 1, scalar) readonly buffer Cells { uint slotCells[]; };
-layout(set = 0, binding = 2, scalar) buffer FaceCells { uint faceCells[]; };     // slot → cell
-layout(set = 0, binding = 3, scalar) buffer CellStarts { uint cellStarts[]; };   // counts, so far
-layout(set = 0, binding = 4, scalar) buffer CellMasks { uint cellMasks[]; };
+layout(set = 0, binding = 2, scalar) buffer FaceCells { uint faceCells[]; };  // slot → cell
+layout(set = 0, binding = 3, scalar) buffer CellMasks { uint cellMasks[]; };
 
 void main() {
   uint s = radivoxItemIndex();
   if (s >= push.faceCount) return;
   uint cell = slotCells[faceCells[s]];
   faceCells[s] = cell;
-  atomicAdd(cellStarts[cell], 1u);
   atomicOr(cellMasks[cell], 1u << dominantDirection(decodeNormal(faces[s].normal)));
 }

@@ -12,7 +12,6 @@ void main() {
   if (control.changed <= push.changeLimit || control.iterations >= push.iterationLimit) {
     // Seeds stay as the faces saw them: they are what the faces agreed with.
     control.cellGroups = uvec3(0u);
-    control.faceGroups = uvec3(0u);
     control.seedGroups = uvec3(0u);
   } else {
     control.changed = 0u;
