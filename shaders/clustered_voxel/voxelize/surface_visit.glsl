@@ -83,26 +83,25 @@ void visitVoxel(Triangle t, ivec3 turned) {
     }
   }
   bool back = reflectsOnBack(material);
-  for (uint k = 0u; k < 3u; ++k) {
+  bool bothSides = grid.singleSided == 0u;
+  // One loop, so that the additions are compiled once: k = s / 2; even s add to the front, or where both sides reflect to +axis for both.
+  for (uint s = 0u; s < 6u; ++s) {
+    uint k = s >> 1;
+    bool isBack = (s & 1u) != 0u;
     float weight = weightOf(piece, surface, k);
-    if (toFixed(weight) == uvec2(0u)) continue;
-    uint plus = 2u * worldAxis(t, k);
+    if (toFixed(weight) == uvec2(0u) || (isBack && (bothSides || !back))) continue;
     bool negative = piece.normal[k] < 0.0;
+    uint plus = 2u * worldAxis(t, k);
     uint front = plus + (negative ? 1u : 0u);
     uint frontFace = first + uint(bitCount(mask & ((1u << front) - 1u)));
-    if (grid.singleSided == 0u) {
-      uint plusFace = first + uint(bitCount(mask & ((1u << plus) - 1u)));
-      addToFace(plusFace, weight, surface.albedo, position, negative ? -normal : normal);
-    } else {
-      addToFace(frontFace, weight, surface.albedo, position, normal);
-      if (back) addToFace(negative ? frontFace - 1u : frontFace + 1u, weight, surface.albedo, position, -normal);
-    }
-    if (kEmissive && any(greaterThan(surface.emission, vec3(0.0)))) {
-      for (uint c = 0u; c < 3u; ++c) {
-        uint word = 6u * frontFace + 2u * c;
-        precise float weighted = weight * (surface.emission[c] * emissionDownscale(emissionPeak));
-        radivoxFixedAtomicAdd(emissionSums[word], emissionSums[word + 1u], toFixed(weighted))
-      }
+    uint f = bothSides ? plus : (isBack ? front ^ 1u : front);
+    bool flips = bothSides ? negative : isBack;
+    addToFace(first + uint(bitCount(mask & ((1u << f) - 1u))), weight, surface.albedo, position, flips ? -normal : normal);
+    if (!kEmissive || isBack || !any(greaterThan(surface.emission, vec3(0.0)))) continue;
+    for (uint c = 0u; c < 3u; ++c) {
+      uint word = 6u * frontFace + 2u * c;
+      precise float weighted = weight * (surface.emission[c] * emissionDownscale(emissionPeak));
+      radivoxFixedAtomicAdd(emissionSums[word], emissionSums[word + 1u], toFixed(weighted))
     }
   }
 }

@@ -40,9 +40,20 @@ vec3 turnBack(vec3 v, uint axis) { return axis == 0u ? v.zxy : (axis == 1u ? v.y
 ivec3 turn(ivec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
 ivec3 turnBack(ivec3 v, uint axis) { return axis == 0u ? v.zxy : (axis == 1u ? v.yzx : v); }
 
-DoubleFloat crossTerm(vec3 a, vec3 aLow, vec3 b, vec3 bLow, uint i, uint j) {
-  return differenceOfProducts(DoubleFloat(a[i], aLow[i]), DoubleFloat(b[j], bLow[j]), DoubleFloat(a[j], aLow[j]),
-                              DoubleFloat(b[i], bLow[i]));
+// Loops whose body is a double-float expression turn the vectors round instead of choosing components: the compiler then keeps one copy of the
+// body, and pipelines are made several times faster.
+void crossProduct(vec3 a, vec3 aLow, vec3 b, vec3 bLow, out vec3 product, out vec3 productLow) {
+  product = productLow = vec3(0.0);
+  for (uint k = 0u; k < 3u; ++k) {
+    DoubleFloat component = differenceOfProducts(DoubleFloat(a.y, aLow.y), DoubleFloat(b.z, bLow.z), DoubleFloat(a.z, aLow.z),
+                                                 DoubleFloat(b.y, bLow.y));
+    product = vec3(product.yz, component.hi);
+    productLow = vec3(productLow.yz, component.lo);
+    a = a.yzx;
+    aLow = aLow.yzx;
+    b = b.yzx;
+    bLow = bLow.yzx;
+  }
 }
 
 Triangle loadTriangle(uint id) {
@@ -67,11 +78,7 @@ Triangle loadTriangle(uint id) {
       t.edgeLow[e][k] = t.isLong ? difference.lo : 0.0;
     }
   }
-  for (uint k = 0u; k < 3u; ++k) {
-    DoubleFloat component = crossTerm(t.edge[0], t.edgeLow[0], t.edge[1], t.edgeLow[1], (k + 1u) % 3u, (k + 2u) % 3u);
-    t.normal[k] = component.hi;
-    t.normalLow[k] = component.lo;
-  }
+  crossProduct(t.edge[0], t.edgeLow[0], t.edge[1], t.edgeLow[1], t.normal, t.normalLow);
   vec3 size = abs(t.normal);
   t.hasPlane = max(size.x, max(size.y, size.z)) > kLeastNormal;
   if (t.hasPlane) {
@@ -91,28 +98,51 @@ Triangle loadTriangle(uint id) {
   return t;
 }
 
-// Is the corner where edge e starts on this side of the voxel's centre, seen along an axis: a_i·q_j − a_j·q_i, q relative to the centre.
-float edgeSide(Triangle t, uint e, uint i, uint j, vec3 centre) {
-  precise float qi = t.p[e][i] - centre[i];
-  precise float qj = t.p[e][j] - centre[j];
-  precise float side = t.edge[e][i] * qj - t.edge[e][j] * qi;
-  if (t.isLong) {
-    DoubleFloat exact = differenceOfProducts(DoubleFloat(t.edge[e][i], t.edgeLow[e][i]), exactSum(t.p[e][j], -centre[j]),
-                                             DoubleFloat(t.edge[e][j], t.edgeLow[e][j]), exactSum(t.p[e][i], -centre[i]));
-    side = exact.hi;
-  }
-  return side;
-}
-
-// Do the three edges, seen along axis k, part the triangle from the voxel? Both ends of an edge have one value; the corner opposite has that
-// value plus twice the projected area, which is the same for all three edges.
+// Do the edges, seen along turned axis k, part the triangle from the voxel? Of an edge's two ends and the corner opposite, the ends have one
+// value, a_i·q_j − a_j·q_i with q relative to the voxel's centre, and the corner has that value plus twice the projected area.
 bool isSeparatedAlong(Triangle t, uint k, vec3 centre) {
   uint i = (k + 1u) % 3u, j = (k + 2u) % 3u;
   for (uint e = 0u; e < 3u; ++e) {
-    float side = edgeSide(t, e, i, j, centre);
+    precise float qi = t.p[e][i] - centre[i];
+    precise float qj = t.p[e][j] - centre[j];
+    precise float side = t.edge[e][i] * qj - t.edge[e][j] * qi;
     precise float opposite = side + t.normal[k];
     precise float radius = (0.5 + kDilation) * (abs(t.edge[e][i]) + abs(t.edge[e][j]));
     if (min(side, opposite) > radius || max(side, opposite) < -radius) return true;
+  }
+  return false;
+}
+
+// The same with double-floats, for long triangles: along z, then x and y, `axisCount` of them from `skipped` on.
+bool isSeparatedExactly(Triangle t, uint skipped, uint axisCount, vec3 centre) {
+  // Component x is the axis; first turn z there.
+  vec3 normal = t.normal.zxy, c = centre.zxy;
+  vec3 p0 = t.p[0].zxy, p1 = t.p[1].zxy, p2 = t.p[2].zxy;
+  vec3 e0 = t.edge[0].zxy, e1 = t.edge[1].zxy, e2 = t.edge[2].zxy;
+  vec3 low0 = t.edgeLow[0].zxy, low1 = t.edgeLow[1].zxy, low2 = t.edgeLow[2].zxy;
+  for (uint step_ = 0u; step_ < 3u * (skipped + axisCount); ++step_) {
+    if (step_ >= 3u * skipped) {
+      DoubleFloat exact = differenceOfProducts(DoubleFloat(e0.y, low0.y), exactSum(p0.z, -c.z), DoubleFloat(e0.z, low0.z),
+                                               exactSum(p0.y, -c.y));
+      precise float side = exact.hi;
+      precise float opposite = side + normal.x;
+      precise float radius = (0.5 + kDilation) * (abs(e0.y) + abs(e0.z));
+      if (min(side, opposite) > radius || max(side, opposite) < -radius) return true;
+    }
+    // The next edge; after three, the next axis.
+    bool turns = step_ % 3u == 2u;
+    vec3 p = p0, e = e0, low = low0;
+    p0 = turns ? p1.yzx : p1;
+    e0 = turns ? e1.yzx : e1;
+    low0 = turns ? low1.yzx : low1;
+    p1 = turns ? p2.yzx : p2;
+    e1 = turns ? e2.yzx : e2;
+    low1 = turns ? low2.yzx : low2;
+    p2 = turns ? p.yzx : p;
+    e2 = turns ? e.yzx : e;
+    low2 = turns ? low.yzx : low;
+    normal = turns ? normal.yzx : normal;
+    c = turns ? c.yzx : c;
   }
   return false;
 }
@@ -122,8 +152,14 @@ bool isSeparatedByPlane(Triangle t, vec3 centre) {
   precise float height = t.normal.x * q.x + t.normal.y * q.y + t.normal.z * q.z;
   if (t.isLong) {
     DoubleFloat exact = DoubleFloat(0.0, 0.0);
-    for (uint k = 0u; k < 3u; ++k)
-      exact = add(exact, multiply(DoubleFloat(t.normal[k], t.normalLow[k]), exactSum(t.p[0][k], -centre[k])));
+    vec3 n = t.normal, low = t.normalLow, p = t.p[0], c = centre;
+    for (uint k = 0u; k < 3u; ++k) {
+      exact = add(exact, multiply(DoubleFloat(n.x, low.x), exactSum(p.x, -c.x)));
+      n = n.yzx;
+      low = low.yzx;
+      p = p.yzx;
+      c = c.yzx;
+    }
     height = exact.hi;
   }
   precise float radius = (0.5 + kDilation) * (abs(t.normal.x) + abs(t.normal.y) + abs(t.normal.z));
@@ -154,7 +190,7 @@ void enterColumn(Triangle t, inout Walk walk) {
   walk.voxel.xy = t.low.xy + ivec2(walk.column % width, walk.column / width);
   ++walk.column;
   vec3 centre = vec3(vec2(walk.voxel.xy) + 0.5, 0.0);
-  if (isSeparatedAlong(t, 2u, centre)) return;
+  if (t.isLong ? isSeparatedExactly(t, 0u, 1u, centre) : isSeparatedAlong(t, 2u, centre)) return;
   walk.voxel.z = t.low.z;
   walk.lastZ = t.high.z;
   if (t.hasPlane) {
@@ -180,9 +216,9 @@ bool findVoxel(Triangle t, inout Walk walk, out ivec3 found) {
     vec3 centre = vec3(walk.voxel) + 0.5;
     found = walk.voxel;
     ++walk.voxel.z;
-    if (!isSeparatedByBounds(t, centre) && !isSeparatedByPlane(t, centre) && !isSeparatedAlong(t, 0u, centre) &&
-        !isSeparatedAlong(t, 1u, centre))
-      return true;
+    if (isSeparatedByBounds(t, centre) || isSeparatedByPlane(t, centre)) continue;
+    bool isSeparated = t.isLong ? isSeparatedExactly(t, 1u, 2u, centre) : isSeparatedAlong(t, 0u, centre) || isSeparatedAlong(t, 1u, centre);
+    if (!isSeparated) return true;
   }
 }
 
