@@ -37,7 +37,7 @@ Executor::Impl::Impl(gpu::Device& device_, Graph& graph_, Plan plan_, const scen
   slots.resize(slotCount);
   steps.resize(plan.steps.size());
   stale.resize(plan.steps.size());
-  batch.reserve(plan.steps.size());
+  linkSteps();
   uint32_t countWords = 0;
   for (uint32_t i = 0; i < steps.size(); ++i) {
     const PlannedStep& planned = plan.steps[i];
@@ -181,7 +181,7 @@ FrameStats Executor::stats() const {
     const PlannedResource& planned = impl_->plan.resources[id];
     const ResourceState& state = impl_->resources[id];
     if (planned.imported || !state.allocated) continue;
-    stats.resources.push_back({planned.name, planned.shape.print(), planned.meaning, state.bytes});
+    stats.resources.push_back({planned.name, planned.shape.print(), planned.meaning, state.bytes, planned.scratch});
   }
   stats.culled = impl_->plan.culled;
   stats.counts = impl_->counts;

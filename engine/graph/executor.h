@@ -22,7 +22,8 @@ struct NodeStats {
 
 struct ResourceStats {
   std::string name, shape, meaning;
-  uint64_t bytes = 0;  ///< as asked for
+  uint64_t bytes = 0;    ///< as asked for
+  bool scratch = false;  ///< shares memory with other scratch: the sum of these is more than is allocated
 };
 
 struct FrameStats {

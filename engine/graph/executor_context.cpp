@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/graph/executor_impl.h"
 
 namespace radivox::graph {
@@ -47,7 +49,7 @@ gpu::Image& StepContext::image(std::string_view port) {
 }
 
 uint64_t StepContext::count(std::string_view name) const {
-  const auto known = impl_.counts.find(std::string(name));
+  const auto known = std::find_if(impl_.counts.begin(), impl_.counts.end(), [&](const auto& c) { return c.first == name; });
   if (known == impl_.counts.end()) {
     misuse(impl_.nodeName(step_), "asks for the count " + std::string(name) + " before it is known: shape a port by it");
   }
@@ -113,7 +115,7 @@ void StepContext::reportProgress(double fraction) {
 
 void StepContext::reportStat(std::string_view name, double value) {
   auto& figures = impl_.steps[step_].stats.figures;
-  const auto known = figures.find(std::string(name));
+  const auto known = std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.first == name; });
   if (known != figures.end()) {
     known->second = value;
   } else {

@@ -45,6 +45,14 @@ struct SlotState {
   AccessState access;
 };
 
+constexpr uint32_t kNoStep = 0xffffffffu;
+
+/// Who writes and who reads one version of a resource, as positions in Plan::steps.
+struct VersionLink {
+  uint32_t writer = kNoStep;  ///< none: an import
+  std::vector<uint32_t> readers;
+};
+
 class StepContext;
 
 struct StepState {
@@ -73,10 +81,11 @@ struct Executor::Impl {
   const scene::Request request;
   Counts counts;
 
-  std::vector<ResourceState> resources;  // as Plan::resources
-  std::vector<StepState> steps;          // as Plan::steps
-  std::vector<SlotState> slots;          // by alias slot
-  std::vector<char> stale;               // scratch of findStale, per step
+  std::vector<ResourceState> resources;         // as Plan::resources
+  std::vector<StepState> steps;                 // as Plan::steps
+  std::vector<SlotState> slots;                 // by alias slot
+  std::vector<std::vector<VersionLink>> links;  // per resource and version
+  std::vector<char> stale;                      // scratch of findStale, per step
   uint64_t nextVersion = 1;
   double frameWallMs = 0;
 
@@ -84,9 +93,8 @@ struct Executor::Impl {
   VkCommandPool commandPool = VK_NULL_HANDLE;
   VkCommandBuffer commandBuffer = VK_NULL_HANDLE;
   std::unique_ptr<gpu::DescriptorPool> descriptors;
-  gpu::Timestamps timestamps;  ///< two queries a step
-  gpu::Buffer countReadback;   ///< one word per published count
-  std::vector<uint32_t> batch;
+  gpu::Timestamps timestamps;                                        ///< two queries a step
+  gpu::Buffer countReadback;                                         ///< one word per published count
   std::vector<std::pair<gpu::Image*, VkImageLayout>> layoutsBefore;  ///< of images that the open batch touches
   Progress progress;
   std::function<bool()> cancelled;
@@ -103,13 +111,13 @@ struct Executor::Impl {
   std::string portName(uint32_t step, const PlannedPort& port) const { return nodeName(step) + "." + port.name; }
 
   // Schedule.
+  void linkSteps();
   void requireImports() const;
   std::string missingImports() const;
   void requireCurrentPlan() const;
   bool isPlanCurrent() const;
   bool isStale(uint32_t step, bool nextFrame) const;
   void findStale(bool nextFrame);
-  bool hasKnownCounts(uint32_t step) const;
 
   // Memory.
   void allocateOutputs(uint32_t step);

@@ -139,7 +139,7 @@ void Executor::Impl::abandon(const std::vector<uint32_t>& batchSteps) {
 }
 
 void Executor::Impl::runBatch(uint32_t first) {
-  batch.clear();
+  std::vector<uint32_t> members;
   std::vector<uint32_t> publishedSegments;
   bool more = false;
   for (uint32_t i = first; i < steps.size(); ++i) {
@@ -148,10 +148,9 @@ void Executor::Impl::runBatch(uint32_t first) {
     const bool waits = std::any_of(publishedSegments.begin(), publishedSegments.end(), [&](uint32_t s) { return s < planned.segment; });
     more = waits || planned.hostPaced;
     if (more) break;
-    batch.push_back(i);
+    members.push_back(i);
     if (!planned.counts.empty()) publishedSegments.push_back(planned.segment);
   }
-  const std::vector<uint32_t> members = batch;
   // A node runs again in one frame only when a later one that modifies its output turned stale by a count of this frame.
   assert(std::all_of(members.begin(), members.end(), [&](uint32_t step) { return steps[step].runsThisFrame <= steps.size(); }));
   bool open = false;

@@ -30,11 +30,6 @@ void Executor::Impl::requireCurrentPlan() const {
   }
 }
 
-bool Executor::Impl::hasKnownCounts(uint32_t step) const {
-  const auto& names = plan.steps[step].neededCounts;
-  return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return counts.count(name) != 0; });
-}
-
 /// On its own account: not because of steps before it that will run.
 bool Executor::Impl::isStale(uint32_t step, bool nextFrame) const {
   const PlannedStep& planned = plan.steps[step];
@@ -54,31 +49,37 @@ bool Executor::Impl::isStale(uint32_t step, bool nextFrame) const {
   return false;
 }
 
+void Executor::Impl::linkSteps() {
+  links.resize(resources.size());
+  for (ResourceId id = 0; id < resources.size(); ++id) links[id].resize(plan.resources[id].versionCount);
+  for (uint32_t i = 0; i < steps.size(); ++i) {
+    for (const PlannedPort& port : plan.steps[i].ports) {
+      if (port.resource == kNoResource) continue;
+      std::vector<VersionLink>& chain = links[port.resource];
+      if (port.access == Access::Read) chain[port.version].readers.push_back(i);
+      if (port.access == Access::Modify) chain[port.version - 1].readers.push_back(i);
+      if (port.access == Access::Write || port.access == Access::Modify) chain[port.version].writer = i;
+    }
+  }
+}
+
 void Executor::Impl::findStale(bool nextFrame) {
   for (uint32_t i = 0; i < steps.size(); ++i) stale[i] = isStale(i, nextFrame) ? 1 : 0;
-  // What runs makes its readers run; what modifies makes the writer before it run, unless the memory still holds that version.
-  bool changed = true;
-  while (changed) {
-    changed = false;
+  bool again = true;
+  while (again) {
+    again = false;
     for (uint32_t i = 0; i < steps.size(); ++i) {
       if (stale[i] == 0) continue;
       for (const PlannedPort& port : plan.steps[i].ports) {
-        if (port.resource == kNoResource || port.access == Access::Scratch || port.access == Access::ReadBack) continue;
-        const bool modifies = port.access == Access::Modify;
-        for (uint32_t j = 0; j < steps.size(); ++j) {
-          if (stale[j] != 0 || j == i) continue;
-          for (const PlannedPort& other : plan.steps[j].ports) {
-            if (other.resource != port.resource) continue;
-            const bool readsMine = port.access != Access::Read && ((other.access == Access::Read && other.version == port.version) ||
-                                                                   (other.access == Access::Modify && other.version == port.version + 1));
-            const bool writesBefore = modifies && other.access != Access::Read && other.version + 1 == port.version &&
-                                      resources[port.resource].currentLink + 1 != port.version;
-            if (readsMine || writesBefore) {
-              stale[j] = 1;
-              changed = true;
-            }
-          }
-        }
+        if (port.resource == kNoResource || (port.access != Access::Write && port.access != Access::Modify)) continue;
+        // What runs makes its readers run; they come later in this pass.
+        for (const uint32_t reader : links[port.resource][port.version].readers) stale[reader] = 1;
+        // What modifies makes the writer before it run, unless the memory still holds that version. It comes earlier: another pass.
+        if (port.access != Access::Modify || resources[port.resource].currentLink + 1 == port.version) continue;
+        const uint32_t writer = links[port.resource][port.version - 1].writer;
+        if (writer == kNoStep || stale[writer] != 0) continue;
+        stale[writer] = 1;
+        again = true;
       }
     }
   }
