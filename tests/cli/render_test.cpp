@@ -202,9 +202,12 @@ std::string cornersGltf() {
 
 TEST_F(RenderCommand, SlowHardestResolutionWorksOrIsRefusedCleanly) {
   write("corners.gltf", cornersGltf());
+  CommandSetup patient;
+  patient.timeLimitSeconds = 800;
   for (const char* resolution : {"8", "1024"}) {
     const CommandResult result = runRadivox({"render", path("corners.gltf"), "--size", "8x8", "--set",
-                                             std::string("voxelize.resolution=") + resolution, "--out", path("a.exr")});
+                                             std::string("voxelize.resolution=") + resolution, "--out", path("a.exr")},
+                                            patient);
     const bool done = result.exitCode == 0;
     EXPECT_TRUE(done || (result.exitCode == 4 && resolution == std::string("1024"))) << result.exitCode << result.err;
     EXPECT_EQ(std::filesystem::exists(path("a.exr")), done);
