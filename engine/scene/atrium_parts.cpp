@@ -141,15 +141,11 @@ void addUrn(MeshBuilder& mesh, const glm::dvec3& foot, const AtriumDetail& detai
       },
       around, detail.segments(9, 3), stone);
   // A clipped shrub: a ball with bumps.
-  const glm::dvec3 centre = foot + glm::dvec3(0, 1.45, 0);
-  mesh.addSurface(
-      [&](double u, double v) {
-        const double a = u >= 1.0 ? 0.0 : 2.0 * kPi * u, b = kPi * (v - 0.5);
-        const double bumps = 1.0 + std::cos(b) * (0.06 * std::sin(5 * a) * std::cos(4 * b) + 0.04 * std::cos(9 * a + 7 * b));
-        const double r = 0.52 * bumps;
-        return centre + glm::dvec3(r * std::cos(b) * std::sin(a), r * std::sin(b), r * std::cos(b) * std::cos(a));
-      },
-      detail.segments(20, 8), detail.segments(12, 5), leaves, true);
+  const auto bumpy = [](const glm::dvec3& d) {
+    return 0.52 * (1.0 + 0.05 * std::sin(7 * d.x + 1) * std::cos(8 * d.y) + 0.04 * std::cos(11 * d.z + 6 * d.y) +
+                   0.02 * std::sin(17 * d.x - 13 * d.z));
+  };
+  addBall(mesh, foot + glm::dvec3(0, 1.45, 0), bumpy, detail.segments(7, 3), false, leaves);
 }
 
 void addFountain(MeshBuilder& mesh, const glm::dvec3& foot, const AtriumDetail& detail, uint32_t stone, uint32_t water) {

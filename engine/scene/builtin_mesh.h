@@ -72,6 +72,10 @@ class MeshBuilder {
   std::vector<glm::dvec3> lightPositions_, cameraPositions_;
 };
 
+/// A ball made of the six faces of a cube, cells × cells each: triangles of like size, no poles, watertight. `radius` by unit direction.
+void addBall(MeshBuilder& mesh, const glm::dvec3& centre, const std::function<double(const glm::dvec3& direction)>& radius, uint32_t cells,
+             bool inward, uint32_t material);
+
 /// lo, …, hi in `parts` equal steps.
 std::vector<double> evenly(double lo, double hi, uint32_t parts);
 

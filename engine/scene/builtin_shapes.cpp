@@ -14,6 +14,29 @@ uint32_t addGrey(MeshBuilder& mesh, BuiltinParameters& parameters) {
 
 }  // namespace
 
+void addBall(MeshBuilder& mesh, const glm::dvec3& centre, const std::function<double(const glm::dvec3& direction)>& radius, uint32_t cells,
+             bool inward, uint32_t material) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const auto point = [&](double u, double v) {
+        if ((sign < 0) != inward) std::swap(u, v);  // keeps fronts outside (or inside)
+        glm::dvec3 p;
+        p[axis] = sign;
+        // The tangent evens the cells out.
+        p[(axis + 1) % 3] = std::tan((2 * u - 1) * glm::quarter_pi<double>());
+        p[(axis + 2) % 3] = std::tan((2 * v - 1) * glm::quarter_pi<double>());
+        // tan(π/4) is not quite 1, and faces must meet exactly.
+        for (int k = 0; k < 3; ++k) {
+          if (std::abs(std::abs(p[k]) - 1.0) < 1e-12) p[k] = p[k] < 0 ? -1.0 : 1.0;
+        }
+        const glm::dvec3 direction = p / glm::length(p);
+        return centre + direction * radius(direction);
+      };
+      mesh.addSurface(point, cells, cells, material, true);
+    }
+  }
+}
+
 void buildPlane(MeshBuilder& mesh, BuiltinParameters& parameters) {
   const double half = parameters.number("size", 10, 1e-3, 1e6) / 2;
   const uint32_t parts = parameters.whole("subdivisions", 1, 1, 1024);
@@ -28,24 +51,8 @@ void buildSphere(MeshBuilder& mesh, BuiltinParameters& parameters) {
   const uint32_t rings = parameters.whole("rings", 32, 3, 1024);
   const bool inward = parameters.whole("inward", 0, 0, 1) == 1;
   const uint32_t material = addGrey(mesh, parameters);
-  // Six faces of a cube blown up, so that triangles are of like size; the tangent warp evens them further.
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double sign : {1.0, -1.0}) {
-      const auto point = [&](double u, double v) {
-        if ((sign < 0) != inward) std::swap(u, v);  // keeps fronts outside (or inside)
-        glm::dvec3 p;
-        p[axis] = sign;
-        p[(axis + 1) % 3] = std::tan((2 * u - 1) * glm::quarter_pi<double>());
-        p[(axis + 2) % 3] = std::tan((2 * v - 1) * glm::quarter_pi<double>());
-        // tan(π/4) is not quite 1, and faces must meet exactly.
-        for (int k = 0; k < 3; ++k) {
-          if (std::abs(std::abs(p[k]) - 1.0) < 1e-12) p[k] = p[k] < 0 ? -1.0 : 1.0;
-        }
-        return p * (radius / glm::length(p));
-      };
-      mesh.addSurface(point, rings, rings, material, true);
-    }
-  }
+  addBall(
+      mesh, glm::dvec3(0.0), [&](const glm::dvec3&) { return radius; }, rings, inward, material);
   if (inward) {
     mesh.addPointLight({0, 0, 0}, glm::vec3(static_cast<float>(radius * radius)));
     mesh.addCamera("inside", {0, 0, radius * 0.8}, {0, 0, 0}, 1.2);

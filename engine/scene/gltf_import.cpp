@@ -219,7 +219,8 @@ CameraDescription readCamera(const Value& json, const Placed& placed) {
 /// A file's near plane is kept where it is small against the scene; a large one would cut walls that rays still see. The far plane
 /// of an orthographic camera always covers the scene.
 void fitDepthRange(CameraDescription& camera, const Traits& traits) {
-  const double diagonal = std::max(1e-6, static_cast<double>(glm::length(traits.boundsMax - traits.boundsMin)));
+  double diagonal = glm::length(glm::dvec3(traits.boundsMax) - glm::dvec3(traits.boundsMin));
+  if (!(diagonal > 0)) diagonal = 2;  // an empty scene
   const auto largest = static_cast<float>(diagonal * 1e-3);
   if (!(camera.znear > 0) || camera.znear > largest) camera.znear = largest;
   const glm::vec3 centre = (traits.boundsMin + traits.boundsMax) * 0.5f;
