@@ -14,10 +14,14 @@ for scene in "$@"; do
     *) scenes+=("$PWD/$scene") ;; # the rest happens in the project's folder
   esac
 done
+shared=${RADIVOX_SHARED:-$root/../shared}
+if [[ "$shared" != /* ]]; then
+  shared="$PWD/$shared"
+fi
 cd "$root"
 if [[ ${#scenes[@]} -eq 0 ]]; then
   scenes=(builtin:atrium)
-  sponza="${RADIVOX_SHARED:-../shared}/scenes/sponza.glb"
+  sponza="$shared/scenes/sponza.glb"
   if [[ -f "$sponza" ]]; then
     scenes+=("$sponza")
   fi

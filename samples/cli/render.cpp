@@ -150,7 +150,8 @@ int runRender(const Options& options) {
   record.phases.totalMs = total.lap();
   record.validated = options.validate;
   record.validationMessageCount = device->validationMessageCount();
-  if (!options.stats.empty()) image::writeFileAtomically(options.stats, printStats(options, job, scene, device->capabilities(), record));
+  if (!options.stats.empty())
+    image::writeFileAtomically(options.stats, printStats(options, job, scene, device->capabilities(), executor.plan(), record));
   if (record.validationMessageCount > 0) {
     throw Error(ErrorCode::DeviceFailed, "--validate: " + std::to_string(record.validationMessageCount) +
                                              " validation messages (above); the picture was written, but report this");

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace radivox::cli {
 
@@ -84,22 +85,25 @@ ordered_json describeMemory(const graph::FrameStats& frame) {
 
 }  // namespace
 
-double bytesPerVoxel(const graph::FrameStats& frame) {
+double bytesPerVoxel(const graph::FrameStats& frame, const graph::Plan& plan) {
   const auto voxels = frame.counts.find("voxels");
   if (voxels == frame.counts.end() || voxels->second == 0) return 0.0;
   std::map<std::string, std::string> typeOf;
   for (const graph::NodeStats& node : frame.nodes) typeOf[node.name] = node.type;
+  std::set<std::string> images;
+  for (const graph::PlannedResource& resource : plan.resources) {
+    if (resource.shape.kind == graph::ResourceKind::Image) images.insert(resource.name);
+  }
   uint64_t bytes = 0;
   for (const graph::ResourceStats& resource : frame.resources) {
     const std::string& type = typeOf[resource.name.substr(0, resource.name.find('.'))];
-    const bool image = frame.counts.count("width") != 0 && resource.shape.find("image") != std::string::npos;
-    if (type.rfind("clustered_voxel.", 0) == 0 && !image) bytes += resource.bytes;
+    if (type.rfind("clustered_voxel.", 0) == 0 && images.count(resource.name) == 0) bytes += resource.bytes;
   }
   return static_cast<double>(bytes) / static_cast<double>(voxels->second);
 }
 
 std::string printStats(const Options& options, const Job& job, const scene::Scene& scene, const gpu::Capabilities& capabilities,
-                       const RunRecord& record) {
+                       const graph::Plan& plan, const RunRecord& record) {
   const graph::FrameStats& last = record.frames.back();
   ordered_json params = ordered_json::object();
   addParams("lights", job.lightParams, params);
@@ -141,7 +145,7 @@ std::string printStats(const Options& options, const Job& job, const scene::Scen
       {"culled", std::move(culled)},
       {"counts", last.counts},
       {"memory", describeMemory(last)},
-      {"bytes_per_voxel", bytesPerVoxel(last)},
+      {"bytes_per_voxel", bytesPerVoxel(last, plan)},
       {"frames", std::move(frames)},
       {"notes", record.notes},
       {"wall_ms",

@@ -28,10 +28,11 @@ struct RunRecord {
   bool validated = false;
 };
 
-/// Bytes of all buffers that clustered_voxel nodes own, over the number of occupied voxels; 0 without voxels.
-double bytesPerVoxel(const graph::FrameStats& frame);
+/// Bytes of all buffers that clustered_voxel nodes own, over the number of occupied voxels; 0 without voxels. Images are left out: they
+/// grow with the picture, not with the scene.
+double bytesPerVoxel(const graph::FrameStats& frame, const graph::Plan& plan);
 
 std::string printStats(const Options& options, const Job& job, const scene::Scene& scene, const gpu::Capabilities& capabilities,
-                       const RunRecord& record);
+                       const graph::Plan& plan, const RunRecord& record);
 
 }  // namespace radivox::cli

@@ -10,13 +10,14 @@
 using namespace radivox;
 
 /// As extracted from README.md.
-void embed(const gpu::AdoptInfo& hostDevice, const std::string& graphJson, VkCommandBuffer commands,
+void embed(const gpu::AdoptInfo& hostDevice, const std::string& graphJson, VkCommandBuffer (*begin)(),
            void (*submitAndWait)(VkCommandBuffer));
 
 namespace {
 
 std::vector<std::string> messages;
 VkQueue queue = VK_NULL_HANDLE;
+VkCommandBuffer hostCommands = VK_NULL_HANDLE;
 int submitCount = 0;
 
 VKAPI_ATTR VkBool32 VKAPI_CALL note(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -70,14 +71,13 @@ class Host {
     queue = adopt.queue;
 
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     pool.queueFamilyIndex = adopt.queueFamily;
     gpu::check(vkCreateCommandPool(adopt.device, &pool, nullptr, &pool_), "vkCreateCommandPool");
     VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     allocate.commandPool = pool_;
     allocate.commandBufferCount = 1;
-    gpu::check(vkAllocateCommandBuffers(adopt.device, &allocate, &commands), "vkAllocateCommandBuffers");
-    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    gpu::check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+    gpu::check(vkAllocateCommandBuffers(adopt.device, &allocate, &hostCommands), "vkAllocateCommandBuffers");
   }
   ~Host() {
     vkDestroyCommandPool(adopt.device, pool_, nullptr);
@@ -91,12 +91,17 @@ class Host {
   Host& operator=(const Host&) = delete;
 
   gpu::AdoptInfo adopt;
-  VkCommandBuffer commands = VK_NULL_HANDLE;
 
  private:
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
 };
+
+VkCommandBuffer begin() {
+  VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  gpu::check(vkBeginCommandBuffer(hostCommands, &info), "vkBeginCommandBuffer");
+  return hostCommands;
+}
 
 void submitAndWait(VkCommandBuffer commands) {
   ++submitCount;
@@ -108,16 +113,16 @@ void submitAndWait(VkCommandBuffer commands) {
   gpu::check(vkQueueWaitIdle(queue), "vkQueueWaitIdle");
 }
 
-TEST(Embedding, WorksAsPrintedInTheReadme) {
+TEST(Embedding, SlowWorksAsPrintedInTheReadme) {
   std::ifstream file(RADIVOX_SOURCE_DIR "/samples/graphs/clustered_voxel.json");
   const std::string graph((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   messages.clear();
   submitCount = 0;
   {
     Host host;
-    ASSERT_NO_THROW(embed(host.adopt, graph, host.commands, submitAndWait));
+    ASSERT_NO_THROW(embed(host.adopt, graph, begin, submitAndWait));
   }  // destroying the device tells of every handle that was left
-  EXPECT_EQ(submitCount, 1);
+  EXPECT_GE(submitCount, 2) << "frames were recorded into the host's command buffer";
   EXPECT_EQ(messages, std::vector<std::string>());
 }
 
