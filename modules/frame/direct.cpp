@@ -75,14 +75,14 @@ void Direct::prepare(graph::PrepareContext& context) {
   constexpr auto kS = BindingType::SampledImage;
   emitters_ = chooseEmitters(context.traits(), context.has("emitted"));
   const bool shadowed = context.has("shadow_depth") && context.has("shadow_triangle");
-  pipeline_ =
-      gpu::Pipeline(context.device(), gpu::ComputePipelineInfo{.shader = "frame/direct.comp",
-                                                               .bindings = {kI, kI, kI, kB, kB, kB, kB, kB, kB, kS, kS, kI, kI, kB, kB, kB},
-                                                               .constants = {{0, filter_},
-                                                                             {1, shadowed},
-                                                                             {2, static_cast<uint32_t>(emitters_)},
-                                                                             {3, context.traits().alphaMasked},
-                                                                             {4, edges_ == Edges::Exact}}});
+  pipeline_ = gpu::Pipeline(
+      context.device(), gpu::ComputePipelineInfo{.shader = "frame/direct.comp",
+                                                 .bindings = {kI, kI, kI, kB, kB, kB, kB, kB, kB, kS, kS, kI, kI, kB, kB, kB},
+                                                 .constants = {{0, filter_},
+                                                               {1, shadowed},
+                                                               {2, static_cast<uint32_t>(emitters_)},
+                                                               {3, context.traits().alphaMasked},
+                                                               {4, edges_ == Edges::Exact && context.traits().punctualLightCount() > 0}}});
 }
 
 void Direct::record(graph::RecordContext& context) {

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -8,10 +9,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint kFilter = 1u;        // texels; half width of the shadow filter
 layout(constant_id = 1) const bool kShadowed = true;    // shadow maps are there
 layout(constant_id = 3) const bool kMasked = false;     // some material has an alpha mask
-layout(constant_id = 4) const bool kExactEdges = true;  // shadows of punctual lights end where triangles end, not where texels do
+layout(constant_id = 4) const bool kExactEdges = true;  // there are punctual lights, and their shadows end where triangles end, not texels
 // How emitters light: not at all; closed form × visible share of the samples; samples alone; closed form unshadowed; an image of others.
 layout(constant_id = 2) const uint kEmitters = 0u;
 const uint kEmittersNone = 0u, kEmittersShadowed = 1u, kEmittersSamples = 2u, kEmittersUnshadowed = 3u, kEmittersImage = 4u;
+const bool kSampled = kEmitters == kEmittersShadowed || kEmitters == kEmittersSamples;
 
 layout(set = 0, binding = 0, rgba32f) readonly uniform image2D positionImage;
 layout(set = 0, binding = 1, rgba32f) readonly uniform image2D normalImage;
@@ -37,7 +39,7 @@ layout(set = 0, binding = 15, scalar) readonly buffer View { Camera camera; };
 vec3 closedForm(vec3 p, vec3 n, vec3 g, out float formFactors) {
   vec3 sum = vec3(0.0);
   formFactors = 0.0;
-  for (uint i = 0u; i < info.emissiveTriangleCount; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i < info.emissiveTriangleCount; ++i) {
     uint triangle = 3u * emissiveTriangles[i].triangle;
     vec3 a = vertices[indices[triangle]].position - p;
     vec3 b = vertices[indices[triangle + 1u]].position - p;
@@ -71,10 +73,10 @@ void main() {
   vec3 sampled = vec3(0.0), sampledSeen = vec3(0.0);
   // Where the distance falls below a sample's share of the emitter, the sample no longer is a point: 1 / (d² + share / π), a disc's.
   float share = info.emissiveArea / float(max(info.emitterSampleCount, 1u)) / 3.14159265358979;
-  for (uint i = 0u; i < info.lightCount; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i < info.lightCount; ++i) {
     Light light = lights[i];
     bool isSample = light.type == kLightEmitterSample;
-    if (isSample && kEmitters != kEmittersShadowed && kEmitters != kEmittersSamples) continue;
+    if (isSample && !kSampled) continue;
     vec3 unshadowed = lightIrradiance(light, p, n);
     if (!(max(unshadowed.x, max(unshadowed.y, unshadowed.z)) > 0.0)) continue;
     // Both normals must face the light: no light through the back of a surface whose shading normal leans over its edge.
@@ -85,7 +87,14 @@ void main() {
       unshadowed *= d2 / (d2 + share);
     }
     float seen = 1.0;
-    if (kShadowed) seen = kExactEdges && !isSample ? exactVisibility(light, p, g, own, position.w) : filteredVisibility(light, p, g, own);
+    if (kShadowed) {
+      // Written so that specialization leaves out the way that no light of the scene takes.
+      if (kExactEdges && !(kSampled && isSample)) {
+        seen = exactVisibility(light, p, g, own, position.w);
+      } else {
+        seen = filteredVisibility(light, p, g, own);
+      }
+    }
     if (isSample) {
       sampled += unshadowed;
       sampledSeen += unshadowed * seen;

@@ -8,7 +8,7 @@ void clipAbove(inout vec3 corners[5], inout uint count, vec3 n) {
   vec3 from[5] = corners;
   uint fromCount = count;
   count = 0u;
-  for (uint i = 0u; i < fromCount; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i < fromCount; ++i) {
     vec3 a = from[i], b = from[i + 1u < fromCount ? i + 1u : 0u];
     float da = dot(a, n), db = dot(b, n);
     if (da >= 0.0) corners[min(count++, 4u)] = a;
@@ -45,7 +45,7 @@ float triangleFormFactor(vec3 a, vec3 b, vec3 c, vec3 n, vec3 g) {
   if (count < 3u) return 0.0;
   vec3 sum = vec3(0.0);
   vec3 last = normalize(corners[count - 1u]);
-  for (uint i = 0u; i < count; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
     vec3 next = normalize(corners[i]);
     vec3 axis = cross(last, next);
     float sine = length(axis);

@@ -18,7 +18,7 @@
 
 // The view of the light that sees p, or false. `clip` is p in that view.
 bool findShadowView(Light light, vec3 p, out uint view, out vec4 clip) {
-  for (uint i = 0u; i < light.shadowViewCount; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i < light.shadowViewCount; ++i) {
     view = light.firstShadowView + i;
     clip = shadowViews[view].viewProjection * vec4(p, 1.0);
     // Views of a light meet at their edges; the allowance closes the gap that rounding may leave.
@@ -122,6 +122,7 @@ uint classifyTexel(Lookup l, ivec2 at, vec3 p, vec3 g, uint own, float nearHeigh
 }
 
 // Visibility of one point from the four texels about it: 0 or 1, or between them where coarse triangles are at the edge.
+const int kCandidateReach = 2;
 struct PointLookup {
   float seen;
   bool agreed;   // all four texels say the same
@@ -133,7 +134,7 @@ PointLookup lookUpPoint(Lookup l, vec3 p, vec3 g, uint own) {
   PointLookup found;
   uint states[4];
   bool anyHidden = false, anyLit = false, anyFar = false;
-  for (uint k = 0u; k < 4u; ++k) {
+  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
     states[k] = classifyTexel(l, first + ivec2(k & 1u, k >> 1), p, g, own, 2.0 * l.texel, found.ids[k]);
     if (states[k] == kLit) found.ids[k] = kNoTexture;
     anyHidden = anyHidden || states[k] == kHidden;
@@ -146,24 +147,26 @@ PointLookup lookUpPoint(Lookup l, vec3 p, vec3 g, uint own) {
   // All in shadow: whether one of these very triangles is in the way does not matter, their neighbours are.
   found.seen = 0.0;
   if (!anyLit) return found;
-  // One large triangle ends here, and where it ends there is light. Several leave room for others that the map does not show.
-  uint one = kNoTexture;
-  bool single = true;
-  for (uint k = 0u; k < 4u; ++k) {
-    if (states[k] != kFar) continue;
-    single = single && (one == kNoTexture || one == found.ids[k]);
-    one = found.ids[k];
+  // The texels about these may show what stands between them: thin triangles slip through four.
+  uint last = kNoTexture;
+  [[dont_unroll]] for (int j = -kCandidateReach; j < 2 + kCandidateReach; ++j) {
+    [[dont_unroll]] for (int i = -kCandidateReach; i < 2 + kCandidateReach; ++i) {
+      ivec2 at = clamp(first + ivec2(i, j), ivec2(0), ivec2(l.resolution - 1));
+      uint id = texelFetch(shadowTriangle, ivec3(at + l.tile.xy, l.tile.z), 0).x;
+      if (id == 0u || id - 1u == own || id - 1u == last) continue;
+      last = id - 1u;
+      vec3 p0, e1, e2;
+      fetchTriangle(last, p0, e1, e2);
+      if (isCoarse(last, e1, e2, l.texel) || !cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax)) continue;
+      found.seen = 0.0;
+      return found;
+    }
   }
-  for (uint k = 0u; k < 4u; ++k) {
+  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
     if (states[k] == kFar) {
       vec3 p0, e1, e2;
       fetchTriangle(found.ids[k], p0, e1, e2);
       if (isCoarse(found.ids[k], e1, e2, l.texel)) continue;
-      if (cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax)) {
-        found.seen = 0.0;
-        return found;
-      }
-      if (!single) continue;
     }
     found.seen += ((k & 1u) != 0u ? f.x : 1.0 - f.x) * ((k >> 1) != 0u ? f.y : 1.0 - f.y);
   }
@@ -171,38 +174,53 @@ PointLookup lookUpPoint(Lookup l, vec3 p, vec3 g, uint own) {
 }
 
 bool anySeparates(PointLookup found, vec3 p, vec3 q, vec3 lift) {
-  for (uint k = 0u; k < 4u; ++k)
+  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k)
     if (found.ids[k] != kNoTexture && separates(found.ids[k], p, q, lift)) return true;
   return false;
+}
+
+// The place on the plane through p that the view has `offset` pixels beside p.
+vec3 pointOfPixel(vec3 p, vec3 g, vec2 offset, float pixel) {
+  vec3 across = normalize(camera.inverseViewProjection[0].xyz), down = normalize(camera.inverseViewProjection[1].xyz);
+  vec3 d = camera.orthographic != 0u ? camera.forward : normalize(p - camera.position);
+  float slope = dot(d, g);
+  slope = abs(slope) > 0.1 ? slope : (slope < 0.0 ? -0.1 : 0.1);  // at grazing angles a pixel is long: at most ten times its width
+  vec3 o = (offset.x * across + offset.y * down) * pixel;
+  o -= d * (dot(o, g) / slope);
+  return p + o - g * dot(o, g);
+}
+
+// A look-up for place q beside p. Off a lit point of a hollow surface the plane runs behind the surface: what q meets at once is that.
+bool prepareBeside(Light light, vec3 p, vec3 q, bool lit, out Lookup l) {
+  bool found = prepareLookup(light, q, l);
+  if (lit) l.tMin += 2.0 * length(q - p);
+  return found;
 }
 
 // Share of the pixel that sees `light`. viewDepth: p's distance along the view axis.
 const uint kEdgeSamples = 8u;
 float exactVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
-  Lookup l;
+  Lookup l, at;
   if (!prepareLookup(light, p, l)) return 1.0;
   PointLookup centre = lookUpPoint(l, p, g, own);
   float pixel = camera.pixelAngle * (camera.orthographic != 0u ? 1.0 : viewDepth);
-  if (centre.agreed && pixel < l.texel) return centre.seen;
+  bool agreed = centre.agreed;
+  // A pixel of several texels: do its corners see what its centre sees?
+  [[dont_unroll]] for (uint k = 0u; k < 4u && agreed && pixel > l.texel; ++k) {
+    vec3 q = pointOfPixel(p, g, vec2(k & 1u, k >> 1) - 0.5, pixel);
+    uint id, state = kLit;
+    if (prepareBeside(light, p, q, centre.seen > 0.0, at)) state = classifyTexel(at, ivec2(floor(at.centre)), q, g, own, 2.0 * at.texel, id);
+    agreed = (state == kLit || state == kBeside) == (centre.seen > 0.0);
+  }
+  if (agreed) return centre.seen;
 
-  // Points of the pixel, on the receiver's plane along the view.
-  vec3 across = normalize(camera.inverseViewProjection[0].xyz) * pixel;
-  vec3 down = normalize(camera.inverseViewProjection[1].xyz) * pixel;
-  vec3 d = camera.orthographic != 0u ? camera.forward : normalize(p - camera.position);
-  float slope = dot(d, g);
-  slope = abs(slope) > 0.1 ? slope : (slope < 0.0 ? -0.1 : 0.1);  // at grazing angles a pixel is long: not beyond ten times its width
   vec3 lift = 2.0 * l.slack * g;
   float seen = 0.0, total = 0.0;
-  for (uint k = 0u; k < kEdgeSamples; ++k) {
-    vec2 offset = vec2((float(k) + 0.5) / float(kEdgeSamples), float(bitfieldReverse(k) >> 8) * (1.0 / 16777216.0) + 0.5 / float(kEdgeSamples)) - 0.5;
-    vec3 q = offset.x * across + offset.y * down;
-    q = p + q - d * (dot(q, g) / slope);
-    q -= g * dot(q - p, g);
-    Lookup at;
+  [[dont_unroll]] for (uint k = 0u; k < kEdgeSamples; ++k) {
+    vec2 offset = vec2(float(k) / float(kEdgeSamples), float(bitfieldReverse(k) >> 8) / 16777216.0) + 0.5 / float(kEdgeSamples) - 0.5;
+    vec3 q = pointOfPixel(p, g, offset, pixel);
     float v = 1.0;
-    if (prepareLookup(light, q, at)) {
-      // Off a lit point of a hollow surface the plane runs behind the surface: what it meets at once is the surface itself.
-      if (centre.seen > 0.0) at.tMin += 2.0 * length(q - p);
+    if (prepareBeside(light, p, q, centre.seen > 0.0, at)) {
       PointLookup there = lookUpPoint(at, q, g, own);
       v = there.seen;
       if (v != centre.seen && (anySeparates(there, p, q, lift) || anySeparates(centre, p, q, lift))) continue;
@@ -233,7 +251,7 @@ float filteredVisibility(Light light, vec3 p, vec3 g, uint own) {
   uint seenBits[2] = uint[2](0u, 0u);  // a bit per texel of the filter, 36 at most
   uint occluders[kMaxOccluders];
   uint occluderCount = 0u;
-  for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
+  [[dont_unroll]] for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
     ivec2 at = first + ivec2(k % (2u * kReach), k / (2u * kReach));
     uint id;
     uint state = classifyTexel(l, at, p, g, own, 2.0 * float(kReach) * l.texel, id);
@@ -244,7 +262,7 @@ float filteredVisibility(Light light, vec3 p, vec3 g, uint own) {
       continue;
     }
     bool known = false;
-    for (uint i = 0u; i < occluderCount; ++i) known = known || occluders[i] == id;
+    [[dont_unroll]] for (uint i = 0u; i < occluderCount; ++i) known = known || occluders[i] == id;
     if (!known && occluderCount < kMaxOccluders) occluders[occluderCount++] = id;
   }
   if (seen <= 0.0) return 0.0;
@@ -253,21 +271,21 @@ float filteredVisibility(Light light, vec3 p, vec3 g, uint own) {
   // Texels disagree. Where on the receiver's plane is each, and does an occluder stand between that place and p?
   float validSeen = 0.0, valid = 0.0;
   vec3 lift = 2.0 * l.slack * g;
-  for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
+  [[dont_unroll]] for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
     ivec2 at = first + ivec2(k % (2u * kReach), k / (2u * kReach));
     vec3 q = unproject(l.view, (vec2(at) + 0.5) / float(l.resolution) * 2.0 - 1.0, l.depth);
     vec3 d = l.parallel ? light.direction : q - light.position;
     float slope = dot(d, g);
     if (slope < 0.0) q += d * (dot(p - q, g) / slope);
     bool apart = false;
-    for (uint i = 0u; i < occluderCount && !apart; ++i) apart = separates(occluders[i], p, q, lift);
+    [[dont_unroll]] for (uint i = 0u; i < occluderCount && !apart; ++i) apart = separates(occluders[i], p, q, lift);
     if (apart) continue;
     float weight = tentWeight(at, l.centre);
     valid += weight;
     if ((seenBits[k / 32u] >> (k % 32u) & 1u) != 0u) validSeen += weight;
   }
   if (valid > 0.0) return validSeen / valid;
-  for (uint i = 0u; i < occluderCount; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i < occluderCount; ++i) {
     vec3 p0, e1, e2;
     fetchTriangle(occluders[i], p0, e1, e2);
     if (cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax)) return 0.0;
