@@ -8,8 +8,8 @@
 // cost    a separating-axis test a (triangle, voxel) pair in the triangles' planes; 8 bytes a brick of 64 voxels, dense
 // source  clustered_voxel_2022 section 4.1; METHODS section 1, Voxelize
 //
-// The cubes are dilated by 5e-5 voxel edges, which covers all rounding: every voxel that the exact test finds is there, and none that
-// the exact test of cubes dilated by 1e-4 does not find. The same bits whatever the method and the device.
+// The cubes are dilated by 2e-5 voxel edges, which covers all rounding: every voxel that the exact test finds is there, and none that
+// the exact test of cubes dilated by 4e-5 does not find. The same bits whatever the method and the device.
 #pragma once
 
 #include "modules/clustered_voxel/voxelize/grid.h"

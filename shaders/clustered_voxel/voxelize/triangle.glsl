@@ -14,7 +14,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer RadivoxGrid { Grid grid; };
 layout(set = 0, binding = 1, scalar) readonly buffer RadivoxVertices { Vertex vertices[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer RadivoxIndices { uint indices[]; };
 
-const float kDilation = 5e-5;      // voxel edges
+const float kDilation = 2e-5;      // voxel edges
 const float kLongTriangle = 64.0;  // voxel edges
 const float kLeastNormal = 1e-30;  // h²; below it a triangle has no plane, and is tested by its edges alone
 
