@@ -18,7 +18,7 @@ Direct::Direct()
                   "shadows of punctual lights end where triangles end (smoothed over the pixel), or where shadow texels do (filtered)",
                   params::Invalidates::Plan),
               params::number("filter", &filter_, {0, 3},
-                             "half width of the shadow filter, texels: emitter samples, and edges=filtered; 0: none",
+                             "widest half width of the shadow filter, texels: emitter samples, and edges=filtered; 0: none",
                              params::Invalidates::Plan),
               params::number("closed_form", &closedForm_, {0, kMaxUnshadowed},
                              "emissive triangles up to this many are summed in closed form, above it emitter samples stand for them",

@@ -6,8 +6,7 @@
 //         emitted? = irradiance that emitters bring, found by rays (only where traits say emittersByRays)
 // writes  irradiance  image RGBA32F  E_direct at the pixel's surface, W/m²; a: 1 surface, 0 sky. Not the sky's light: composite adds that
 // runs    when the view, the lights or the shadow maps change
-// cost    pixels × (punctual lights × 4 texels + emitter samples × (2·filter)² texels + emissive triangles up to `closed_form`); 36 texels a light
-//         in pixels at shadow edges. Left out without lights and emitters.
+// cost    pixels × (punctual lights × 4 texels + emitter samples × (2·filter)² texels + emissive triangles up to `closed_form`); at shadow edges 8 × up to 40 texels a light. Left out without lights and emitters.
 // source  KHR_lights_punctual; Lambert's boundary formula (shaders/frame/polygon.glsl); shadow.glsl for visibility
 //
 // Light counts only where it meets the viewer's side, by shading and by geometric normal.
@@ -39,7 +38,7 @@ class Direct : public graph::Node {
 
   enum class Edges : uint32_t { Exact, Filtered };
   Edges edges_ = Edges::Exact;
-  uint32_t filter_ = 1;
+  uint32_t filter_ = 3;
   uint32_t closedForm_ = 256;
   params::Table table_;
   Emitters emitters_ = Emitters::None;

@@ -71,8 +71,8 @@ void main() {
 
   vec3 irradiance = vec3(0.0);
   vec3 sampled = vec3(0.0), sampledSeen = vec3(0.0);
-  // Where the distance falls below a sample's share of the emitter, the sample no longer is a point: 1 / (d² + share / π), a disc's.
-  float share = info.emissiveArea / float(max(info.emitterSampleCount, 1u)) / 3.14159265358979;
+  // Where the distance falls below the patch of emitter that a sample stands for, the sample no longer is a point: 1 / (d² + area / π), a disc's.
+  float patchArea = info.emissiveArea / float(max(info.emitterSampleCount, 1u));
   [[dont_unroll]] for (uint i = 0u; i < info.lightCount; ++i) {
     Light light = lights[i];
     bool isSample = light.type == kLightEmitterSample;
@@ -84,7 +84,7 @@ void main() {
     if (isSample) {
       vec3 d = light.position - p;
       float d2 = dot(d, d);
-      unshadowed *= d2 / (d2 + share);
+      unshadowed *= d2 / (d2 + patchArea / 3.14159265358979);
     }
     float seen = 1.0;
     if (kShadowed) {
@@ -92,7 +92,7 @@ void main() {
       if (kExactEdges && !(kSampled && isSample)) {
         seen = exactVisibility(light, p, g, own, position.w);
       } else {
-        seen = filteredVisibility(light, p, g, own);
+        seen = filteredVisibility(light, p, g, own, isSample ? sqrt(patchArea) : 0.0);
       }
     }
     if (isSample) {

@@ -104,14 +104,14 @@ const uint kBeside = 1u;   // an occluder near the plane, but not between the po
 const uint kHidden = 2u;   // an occluder near the plane, between the point and the light
 const uint kFar = 3u;      // an occluder high above the plane
 
-// What texel `at` of the tile says about p; `id`: its triangle, unless kLit.
-uint classifyTexel(Lookup l, ivec2 at, vec3 p, vec3 g, uint own, float nearHeight, out uint id) {
+// What texel `at` of the tile says about p; id, occluder: its triangle and point, unless kLit.
+uint classifyTexel(Lookup l, ivec2 at, vec3 p, vec3 g, uint own, float nearHeight, out uint id, out vec3 occluder) {
   at = clamp(at, ivec2(0), ivec2(l.resolution - 1));
   ivec3 where = ivec3(at + l.tile.xy, l.tile.z);
   id = texelFetch(shadowTriangle, where, 0).x;
   if (id == 0u || id - 1u == own) return kLit;
   id -= 1u;
-  vec3 occluder = unproject(l.view, (vec2(at) + 0.5) / float(l.resolution) * 2.0 - 1.0, texelFetch(shadowDepth, where, 0).x);
+  occluder = unproject(l.view, (vec2(at) + 0.5) / float(l.resolution) * 2.0 - 1.0, texelFetch(shadowDepth, where, 0).x);
   float height = dot(occluder - p, g);
   if (height <= l.slack) return kLit;
   if (height >= nearHeight) return kFar;
@@ -134,8 +134,9 @@ PointLookup lookUpPoint(Lookup l, vec3 p, vec3 g, uint own) {
   PointLookup found;
   uint states[4];
   bool anyHidden = false, anyLit = false, anyFar = false;
+  vec3 unused;
   [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
-    states[k] = classifyTexel(l, first + ivec2(k & 1u, k >> 1), p, g, own, 2.0 * l.texel, found.ids[k]);
+    states[k] = classifyTexel(l, first + ivec2(k & 1u, k >> 1), p, g, own, 2.0 * l.texel, found.ids[k], unused);
     if (states[k] == kLit) found.ids[k] = kNoTexture;
     anyHidden = anyHidden || states[k] == kHidden;
     anyFar = anyFar || states[k] == kFar;
@@ -209,7 +210,8 @@ float exactVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
   [[dont_unroll]] for (uint k = 0u; k < 4u && agreed && pixel > l.texel; ++k) {
     vec3 q = pointOfPixel(p, g, vec2(k & 1u, k >> 1) - 0.5, pixel);
     uint id, state = kLit;
-    if (prepareBeside(light, p, q, centre.seen > 0.0, at)) state = classifyTexel(at, ivec2(floor(at.centre)), q, g, own, 2.0 * at.texel, id);
+    vec3 unused;
+    if (prepareBeside(light, p, q, centre.seen > 0.0, at)) state = classifyTexel(at, ivec2(floor(at.centre)), q, g, own, 2.0 * at.texel, id, unused);
     agreed = (state == kLit || state == kBeside) == (centre.seen > 0.0);
   }
   if (agreed) return centre.seen;
@@ -231,48 +233,76 @@ float exactVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
   return total > 0.0 ? seen / total : centre.seen;
 }
 
-// A tent of half width kFilter texels; 0: the nearest texel decides, its neighbours are still asked about contact.
-const uint kReach = kFilter > 0u ? kFilter : 1u;
-float tentWeight(ivec2 texel, vec2 centre) {
-  vec2 offset = abs(vec2(texel) + 0.5 - centre);
-  vec2 tent = kFilter == 0u ? vec2(lessThanEqual(offset, vec2(0.5))) : max(vec2(0.0), 1.0 - offset / float(kReach));
-  return tent.x * tent.y;
-}
-
 // Distinct triangles of a filter's shadowed texels: the first few stand for all.
 const uint kMaxOccluders = 4u;
 
-// Share in [0, 1] of the filter's texels that see `light` from p. g: geometric normal on the light's side; own: p's triangle.
-float filteredVisibility(Light light, vec3 p, vec3 g, uint own) {
+// Share in [0, 1] of the texels within a tent that see `light` from p. g: geometric normal on the light's side; own: p's triangle.
+// The tent's half width is kFilter texels (0: the nearest texel alone), or less for an emitter sample that stands for a patch of side
+// `spread` (m): as wide as the shadow that one patch's edge is smeared over by the next, given where the occluders are.
+const uint kReach = kFilter > 0u ? kFilter : 1u;
+float filteredVisibility(Light light, vec3 p, vec3 g, uint own, float spread) {
   Lookup l;
   if (!prepareLookup(light, p, l)) return 1.0;
+  const uint side = 2u * kReach;
   ivec2 first = ivec2(floor(l.centre - 0.5 - float(kReach))) + 1;
-  float seen = 0.0;
-  uint seenBits[2] = uint[2](0u, 0u);  // a bit per texel of the filter, 36 at most
+  float nearHeight = 2.0 * float(kReach) * l.texel;
+  uint id;
+  vec3 occluder;
+
+  // The corners and the middle first: mostly they agree, and speak for all.
+  float litCount = 0.0, farCount = 0.0, distances = 0.0;
+  [[dont_unroll]] for (uint k = 0u; k < 8u; ++k) {
+    uvec2 at = uvec2(k & 1u, (k >> 1) & 1u);
+    at = k < 4u ? at * (side - 1u) : at + kReach - 1u;
+    uint state = classifyTexel(l, first + ivec2(at), p, g, own, nearHeight, id, occluder);
+    if (state == kHidden) return 0.0;
+    if (state == kFar) {
+      farCount += 1.0;
+      distances += distance(occluder, light.position);
+    } else {
+      litCount += 1.0;
+    }
+  }
+  if (litCount == 0.0) return 0.0;
+  if (farCount == 0.0) return 1.0;
+  float halfWidth = float(kReach);
+  if (!l.parallel && spread > 0.0) {
+    float toOccluder = max(distances / farCount, 1e-3 * l.tMax);
+    halfWidth = clamp(spread * max(l.tMax - toOccluder, 0.0) / (toOccluder * l.texel), 1.0, halfWidth);
+  }
+
+  float seen = 0.0, total = 0.0;
+  uint litBits[2] = uint[2](0u, 0u);  // a bit per texel of the filter, 36 at most
   uint occluders[kMaxOccluders];
   uint occluderCount = 0u;
-  [[dont_unroll]] for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
-    ivec2 at = first + ivec2(k % (2u * kReach), k / (2u * kReach));
-    uint id;
-    uint state = classifyTexel(l, at, p, g, own, 2.0 * float(kReach) * l.texel, id);
+  [[dont_unroll]] for (uint k = 0u; k < side * side; ++k) {
+    ivec2 at = first + ivec2(k % side, k / side);
+    vec2 offset = abs(vec2(at) + 0.5 - l.centre);
+    vec2 tent = kFilter == 0u ? vec2(lessThanEqual(offset, vec2(0.5))) : max(vec2(0.0), 1.0 - offset / halfWidth);
+    uint state = classifyTexel(l, at, p, g, own, nearHeight, id, occluder);
     if (state == kHidden) return 0.0;
+    total += tent.x * tent.y;
     if (state != kFar) {
-      seen += tentWeight(at, l.centre);
-      seenBits[k / 32u] |= 1u << (k % 32u);
+      seen += tent.x * tent.y;
+      litBits[k / 32u] |= 1u << (k % 32u);
       continue;
     }
     bool known = false;
     [[dont_unroll]] for (uint i = 0u; i < occluderCount; ++i) known = known || occluders[i] == id;
     if (!known && occluderCount < kMaxOccluders) occluders[occluderCount++] = id;
   }
-  if (seen <= 0.0) return 0.0;
-  if (occluderCount == 0u) return 1.0;
+  // Texels of no weight must not make a point dark that they do not reach.
+  if (occluderCount == 0u || seen == total) return 1.0;
 
   // Texels disagree. Where on the receiver's plane is each, and does an occluder stand between that place and p?
   float validSeen = 0.0, valid = 0.0;
   vec3 lift = 2.0 * l.slack * g;
-  [[dont_unroll]] for (uint k = 0u; k < 4u * kReach * kReach; ++k) {
-    ivec2 at = first + ivec2(k % (2u * kReach), k / (2u * kReach));
+  [[dont_unroll]] for (uint k = 0u; k < side * side; ++k) {
+    ivec2 at = first + ivec2(k % side, k / side);
+    vec2 offset = abs(vec2(at) + 0.5 - l.centre);
+    vec2 tent = kFilter == 0u ? vec2(lessThanEqual(offset, vec2(0.5))) : max(vec2(0.0), 1.0 - offset / halfWidth);
+    float weight = tent.x * tent.y;
+    if (weight == 0.0) continue;
     vec3 q = unproject(l.view, (vec2(at) + 0.5) / float(l.resolution) * 2.0 - 1.0, l.depth);
     vec3 d = l.parallel ? light.direction : q - light.position;
     float slope = dot(d, g);
@@ -280,9 +310,8 @@ float filteredVisibility(Light light, vec3 p, vec3 g, uint own) {
     bool apart = false;
     [[dont_unroll]] for (uint i = 0u; i < occluderCount && !apart; ++i) apart = separates(occluders[i], p, q, lift);
     if (apart) continue;
-    float weight = tentWeight(at, l.centre);
     valid += weight;
-    if ((seenBits[k / 32u] >> (k % 32u) & 1u) != 0u) validSeen += weight;
+    if ((litBits[k / 32u] >> (k % 32u) & 1u) != 0u) validSeen += weight;
   }
   if (valid > 0.0) return validSeen / valid;
   [[dont_unroll]] for (uint i = 0u; i < occluderCount; ++i) {

@@ -251,7 +251,8 @@ TEST_F(ShadowTest, PenumbraOfAnEmitterMatchesIntegration) {
     const double miss = (irradiance[i].x - expected) / full;
     if (expected < 0.95 * full && expected > 0.05 * full) ++partial;
     if (expected == full || expected == 0) {
-      EXPECT_NEAR(irradiance[i].x, expected, 0.01 * full);
+      // Next to the penumbra the filter of the nearest sample may reach over its edge: half of one sample in 32, times its weight.
+      EXPECT_NEAR(irradiance[i].x, expected, 0.02 * full);
     }
     error2 += miss * miss;
     worst = std::max(worst, std::abs(miss));
@@ -263,7 +264,7 @@ TEST_F(ShadowTest, PenumbraOfAnEmitterMatchesIntegration) {
               sum / expectedSum, std::sqrt(error2 / static_cast<double>(count)), worst);
   EXPECT_GT(partial, count / 10);
   EXPECT_NEAR(sum / expectedSum, 1.0, 0.01);
-  EXPECT_LT(std::sqrt(error2 / static_cast<double>(count)), 0.02);
+  EXPECT_LT(std::sqrt(error2 / static_cast<double>(count)), 0.017);
   EXPECT_LT(worst, 0.12);
 }
 

@@ -27,7 +27,6 @@ class FrameTruthTest : public oracles::GpuTest {
     frame_test::show(truth.direct, name + "_truth");
     const oracles::Difference difference = oracles::compareToTruth(truth.direct, direct, truth.albedo);
     std::printf("%s: irradiance_direct %.2f dB, bias %.4f\n", name.c_str(), difference.psnr, difference.bias);
-    for (const graph::NodeStats& stats : run.executor->stats().nodes) std::printf("  %s %.1f ms\n", stats.name.c_str(), stats.gpuMs);
     EXPECT_GT(difference.psnr, leastPsnr);
     EXPECT_NEAR(difference.bias, 1.0, 0.02);
     const oracles::Difference albedo = oracles::compareToTruth(truth.albedo, run.picture("gbuffer.albedo"), truth.albedo);
