@@ -5,7 +5,7 @@
 //         first  u32 × (V + 1)  faces before the voxel; the last one is F
 //         count  u32            [faces]
 // runs    when the geometry, the voxels or a parameter changes
-// cost    a polygon clip a (triangle, voxel) pair, and up to 16 texture look-ups where alpha masks are
+// cost    an outline integral a (triangle, voxel) pair, and up to 36 texture look-ups where alpha masks are
 // source  METHODS section 1, Voxelize (area); the paper keeps fragment lists instead
 //
 // Area is that of the polygon inside the half-open voxel, so a voxel that is only touched has no faces, and neither has one whose

@@ -5,7 +5,7 @@
 // writes  faces     Face × F   a_s = Σ w in h², w = area · |n·e_f|; ρ_s, n_s, x_s: means weighted by w
 //         emission  vec3 × F   B_e = π Σ w L_e / a_s, W/m², of what faces outward on this side; 0: dark. Made only if read
 // runs    when the geometry, materials, the voxels or a parameter changes
-// cost    a polygon clip and up to 31 atomic adds a (triangle, voxel) pair, more where sides=gltf; scratch 80 bytes a face (104 with
+// cost    an outline integral and up to 62 atomic adds a (triangle, voxel) pair, more where sides=gltf; scratch 80 bytes a face (104 with
 //         emitters) and 8 a voxel
 // source  METHODS section 1, Voxelize; normals=heuristic: clustered_voxel_2022 section 4.2
 //
