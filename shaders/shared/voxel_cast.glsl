@@ -22,6 +22,7 @@
 // by 1.5 h: 0.018 to 0.053, not lifted: 0.23), mean error of E 36 % (50 %, 270 %); leaks of a closed room below 2e-4 of the rays.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
+#extension GL_KHR_shader_subgroup_vote : require
 #include "shared/clearance.h"
 #include "shared/traversal.glsl"
 #include "shared/voxel_lookup.glsl"
@@ -58,7 +59,6 @@ layout(set = 0, binding = RADIVOX_BIND_CLEARANCE, scalar) readonly buffer Radivo
 float clearanceAt(vec3 voxel) {
   uint i = clearanceIndex(uvec3(ivec3(voxel) + 1), castSize);
   uint word = clearance[i >> 2];
-  // Two constant shifts instead of one that differs per lane.
   word = (i & 1u) != 0u ? word >> 8 : word;
   word = (i & 2u) != 0u ? word >> 16 : word;
   return float(word & 0xffu);
@@ -76,35 +76,42 @@ uint castBrickDistance(uint brick) {
 #endif
 }
 
-// Moves on until the cursor is in a voxel that may have faces, or outside; not at all if it is already. Returns whether it moved.
-bool castMarch(TraversalRay ray, inout TraversalCursor cursor) {
-  // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
-  uint all_ = castSize.x + castSize.y + castSize.z + 4u;
-  uint passes = all_;
-  if (RADIVOX_SKIP == kSkipClearance) {
+// The empty box around the cursor's voxel; false: none, since the voxel may have faces or is outside.
+bool castEmptyBox(TraversalCursor cursor, out vec3 low, out vec3 high) {
 #ifdef RADIVOX_BIND_CLEARANCE
-    for (float c = clearanceAt(cursor.voxel); c > 0.0 && passes > 0u; --passes) {
-      traversalLeave(ray, cursor.voxel + 1.0 - c, cursor.voxel + c, cursor);
-      c = clearanceAt(cursor.voxel);
-    }
-#endif
-  } else {
-    for (; passes > 0u && !isOutside(cursor.voxel); --passes) {
-      uvec3 voxel = uvec3(cursor.voxel);
-      vec3 low = cursor.voxel;
-      vec3 high = cursor.voxel + 1.0;
-      uint brick = brickOf(voxel, castBricks);
-      uint distance = RADIVOX_SKIP == kSkipBricks ? castBrickDistance(brick) : 0u;
-      if (distance == 0u) {
-        if (hasBit(occupancy[brick], bitOf(voxel))) break;
-      } else {
-        low = vec3(4 * (ivec3(voxel >> 2) - int(distance) + 1));
-        high = vec3(4 * (ivec3(voxel >> 2) + int(distance)));
-      }
-      traversalLeave(ray, low, high, cursor);
-    }
+  if (RADIVOX_SKIP == kSkipClearance) {
+    float c = clearanceAt(cursor.voxel);
+    low = cursor.voxel + 1.0 - c;
+    high = cursor.voxel + c;
+    return c > 0.0;
   }
-  return passes != all_;
+#endif
+  uvec3 voxel = uvec3(clamp(cursor.voxel, vec3(0.0), vec3(castSize - 1u)));
+  uint brick = brickOf(voxel, castBricks);
+  uint distance = RADIVOX_SKIP == kSkipBricks ? castBrickDistance(brick) : 0u;
+  vec3 corner = vec3(voxel & ~3u);
+  low = distance > 0u ? corner + 4.0 - 4.0 * float(distance) : cursor.voxel;
+  high = distance > 0u ? corner + 4.0 * float(distance) : cursor.voxel + 1.0;
+  return !isOutside(cursor.voxel) && (distance > 0u || !hasBit(occupancy[brick], bitOf(voxel)));
+}
+
+// Moves on, if `live`, until the cursor is in a voxel that may have faces, or outside. Returns whether it moved.
+//
+// Lanes that have arrived go along without moving until all have: every lane loads in every pass, which CPU devices, where a
+// masked load is a branch a lane, do in half the time.
+bool castMarch(TraversalRay ray, inout TraversalCursor cursor, bool live) {
+  vec3 low, high;
+  bool moving = castEmptyBox(cursor, low, high) && live;
+  bool moved = moving;
+  // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
+  for (uint passes = castSize.x + castSize.y + castSize.z + 4u; subgroupAny(moving) && passes > 0u; --passes) {
+    TraversalCursor next = cursor;
+    traversalLeave(ray, low, high, next);
+    cursor.voxel = mix(cursor.voxel, next.voxel, bvec3(moving));
+    cursor.time = moving ? next.time : cursor.time;
+    moving = castEmptyBox(cursor, low, high) && moving;
+  }
+  return moved;
 }
 
 float castDot(vec3 a, vec3 b) {
@@ -138,18 +145,18 @@ uint ownPlanes(uint voxel, uvec3 coordinate, vec3 position, vec3 normal, out boo
   return own;
 }
 
-// The face of the cursor's voxel, which is in the grid, that the ray hits before it leaves the voxel; kHitNothing: none, the ray goes on;
-// kHitBack. Planes in `excluded` do not count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel before had no
-// faces. `random` is uniform.
-uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uint inFront, uint random) {
+// The face of the cursor's voxel that the ray hits before it leaves the voxel; kHitNothing: none (or `live` is false, or the cursor
+// is outside); kHitBack. Planes in `excluded` do not count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel
+// before had no faces. `random` is uniform. Lanes stay together, as in castMarch.
+uint castFace(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded, inout uint inFront, uint random) {
   uint wasInFront = inFront;
   inFront = 0u;
-  uvec3 coordinate = uvec3(cursor.voxel);
+  uvec3 coordinate = uvec3(clamp(cursor.voxel, vec3(0.0), vec3(castSize - 1u)));
   uint brick = brickOf(coordinate, castBricks);
   uint bit = bitOf(coordinate);
   uvec2 word = occupancy[brick];
-  if (!hasBit(word, bit)) return kHitNothing;
-  uint voxel = brickRank[brick] + countBitsBelow(word, bit);
+  live = live && !isOutside(cursor.voxel) && hasBit(word, bit);
+  uint voxel = min(brickRank[brick] + countBitsBelow(word, bit), RADIVOX_VOXEL_COUNT - 1u);
   uvec2 plane = planes[voxel];
   uint mask = plane.x >> 26;
   vec3 exits = traversalExits(ray, cursor.voxel);
@@ -163,12 +170,12 @@ uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uin
   float bestWhole = 1.0;
   vec3 bestNormal = vec3(0.0);
   uint bestFaces = 0u;
-  bool more = mask != 0u;
-  for (uint i = 0u; more; ++i) {
+  bool more = live && mask != 0u;
+  for (uint i = 0u; subgroupAny(more); ++i) {
     vec3 n = planeNormal(plane.x);
     uint axis = planeAxis(n);
     vec3 mean = decodePosition(plane.y);
-    bool counts = ((excluded >> i) & 1u) == 0u;
+    bool counts = more && ((excluded >> i) & 1u) == 0u;
     float slope = castDot(ray.direction, n);
     n = slope > 0.0 ? -n : n;
     // Axes along which the near side looks at the ray.
@@ -200,10 +207,10 @@ uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uin
       bestNormal = n;
       bestFaces = looks | ((plane.x >> 20) & looks) << 8;
     }
-    more = (plane.y & kPlaneMore) != 0u;
+    more = more && (plane.y & kPlaneMore) != 0u;
     if (more) plane = nextPlane(voxel, i);
   }
-  if (bestFaces == 0u) return kHitNothing;
+  bool any_ = bestFaces != 0u;
   // A face that mixes in other surface may have a plane of its own.
   bestFaces = bestFaces >> 8 != 0u ? bestFaces >> 8 : bestFaces & mask;
   precise vec3 weight = abs(bestNormal * ray.direction);
@@ -212,8 +219,8 @@ uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uin
   precise float total = two + w.z;
   precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
   uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
-  if (!(total > 0.0)) return kHitBack;
-  return castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
+  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
+  return !any_ ? kHitNothing : (total > 0.0 ? face : kHitBack);
 }
 
 #endif

@@ -235,14 +235,14 @@ std::vector<ivec3> bresenhamLine(const glm::uvec3& size, const ivec3& start, con
   }
 }
 
-RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& settings, const std::vector<vec3>& directions, uint32_t face,
+RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& settings, const std::vector<uint32_t>& directions, uint32_t face,
                        uint32_t ray) {
   const uint32_t key = s.faces[face].key;
   const glm::uvec3 coordinate = s.voxelCoordinate(key >> 3);
   const vec3 position = s.facePosition(face);
   const vec3 axis = shared::faceVector(key & 7u);
   const vec3 n = settings.axisFrame ? axis : shared::decodeNormal(s.faces[face].normal);
-  const vec3 local = directions[shared::rotationOf(face) * settings.rays + ray];
+  const vec3 local = shared::decodeDirection(directions[shared::shiftOf(face) * settings.rays + ray]);
   vec3 direction = shared::alongNormal(local, n);
   for (int k = 0; k < 3; ++k) direction[k] = std::fabs(direction[k]) < kFlat ? 0.f : direction[k];
   const uint32_t random = shared::rayRandom(face, ray);
@@ -282,7 +282,7 @@ RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& setti
 
 std::vector<std::map<uint32_t, uint32_t>> visibilityRows(const VoxelStructures& s, const VisibilitySettings& settings,
                                                          const std::vector<uint32_t>& labels, uint32_t clusterCount) {
-  const std::vector<vec3> directions = clustered_voxel::makeDirections(settings.rays);
+  const std::vector<uint32_t> directions = clustered_voxel::makeDirections(settings.rays);
   std::vector<std::map<uint32_t, uint32_t>> rows(s.faces.size());
   for (uint32_t face = 0; face < s.faces.size(); ++face) {
     for (uint32_t ray = 0; ray < settings.rays; ++ray) {

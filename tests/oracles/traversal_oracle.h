@@ -41,7 +41,7 @@ struct RayResult {
   glm::vec3 direction{0.f};
 };
 /// Ray `ray` of face `face`; `directions` as makeDirections() gives them.
-RayResult traceFaceRay(const VoxelStructures& structures, const VisibilitySettings& settings, const std::vector<glm::vec3>& directions,
+RayResult traceFaceRay(const VoxelStructures& structures, const VisibilitySettings& settings, const std::vector<uint32_t>& directions,
                        uint32_t face, uint32_t ray);
 
 /// id → count of each face (shaders/shared/voxel.h: clusters, near faces, misses by bin, kAbsorbed).

@@ -16,6 +16,9 @@ using graph::Extent;
 using graph::Shape;
 using shared::kRowsPerChunk;
 
+constexpr size_t kTraceBindings = 13;
+constexpr size_t kDirectionsBinding = 9;
+
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
 
 uint64_t clearanceBytes(const shared::Grid& grid) {
@@ -81,10 +84,11 @@ void Visibility::prepare(graph::PrepareContext& context) {
   maxRange_ = device.capabilities().maxStorageBufferRange;
   scan_ = std::make_unique<gpu::Scan>(device);
   const auto make = [&](std::string_view shader, size_t bindings, uint32_t pushBytes, std::vector<gpu::SpecializationConstant> constants) {
-    return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
-                                                          .bindings = std::vector<BindingType>(bindings, kB),
-                                                          .pushConstantBytes = pushBytes,
-                                                          .constants = std::move(constants)});
+    std::vector<BindingType> types(bindings, kB);
+    if (bindings == kTraceBindings) types[kDirectionsBinding] = BindingType::UniformBuffer;
+    return gpu::Pipeline(
+        device, gpu::ComputePipelineInfo{
+                    .shader = shader, .bindings = std::move(types), .pushConstantBytes = pushBytes, .constants = std::move(constants)});
   };
   countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
   planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
@@ -93,7 +97,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
   if (traversal_ == Traversal::Bresenham) {
-    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", 13, 20, {{2, frame}});
+    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 20, {{2, frame}});
   } else {
     const auto hit = static_cast<uint32_t>(hit_);
     if (skip_ == Skip::Clearance) {
@@ -102,11 +106,14 @@ void Visibility::prepare(graph::PrepareContext& context) {
       clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
-    trace_ = make("clustered_voxel/visibility/trace.comp", 13, 20, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}});
-    if (skip_ == Skip::Clearance) traceBricks_ = make("clustered_voxel/visibility/trace.comp", 13, 20, {{0, 1}, {1, hit}, {2, frame}});
+    trace_ =
+        make("clustered_voxel/visibility/trace.comp", kTraceBindings, 20, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}});
+    if (skip_ == Skip::Clearance)
+      traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 20, {{0, 1}, {1, hit}, {2, frame}});
   }
-  const std::vector<glm::vec3> directions = makeDirections(rays_);
-  directions_ = gpu::Buffer(device, "visibility directions", directions.size() * sizeof(glm::vec3));
+  std::vector<uint32_t> directions = makeDirections(rays_);
+  directions.resize(shared::kShiftCount * shared::kMaxRays);
+  directions_ = gpu::Buffer(device, "visibility directions", directions.size() * sizeof(uint32_t));
   gpu::upload(device, directions_, directions);
 }
 
@@ -203,10 +210,11 @@ void Visibility::recordClearance(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& result = *context.grown("clearance").at(0);
   const gpu::Buffer& work = *context.grown("clearance_work").at(0);
+  const uint64_t rows = uint64_t{grid_.size.y + 2} * (grid_.size.z + 2);
   const uint64_t words = clearanceBytes(grid_) / 4;
   commands.bind(clearanceRows_,
                 {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"), result});
-  commands.dispatchItems(uint64_t{grid_.size.y + 2} * (grid_.size.z + 2), 64);
+  commands.dispatchItems(rows, 64);
   commands.barrier();
   commands.bind(clearancePlanes_, {result, work, context.buffer("grid")});
   commands.dispatchItems(words, 64);

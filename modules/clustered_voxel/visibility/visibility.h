@@ -17,7 +17,7 @@
 // `near` keeps its face's id, a farther one becomes its cluster's. Misses count by direction bin, backs of one-sided surfaces as
 // kAbsorbed, so that rows always sum to M.
 //
-// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction and rotation (sort_rows.comp): that,
+// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction (sort_rows.comp): that,
 // and the clearance bytes, are what makes it fast. Rows do not depend on either.
 #pragma once
 

@@ -4,6 +4,7 @@
 // Rays of one chunk of voxel faces. A lane traces kRaysPerLane rays of one face; lanes that sit together trace the same rays of
 // faces that look the same way (see sort_rows.comp). See modules/clustered_voxel/visibility/visibility.h.
 layout(local_size_x = 64) in;
+#include "clustered_voxel/visibility/visibility.h"
 layout(constant_id = 0) const uint kSkip = 2;
 layout(constant_id = 1) const uint kHit = 0;
 layout(constant_id = 2) const uint kFrame = 0;  // 0: about n_s from x_s; 1: about e_f from the middle of the voxel's side (paper)
@@ -21,7 +22,7 @@ layout(constant_id = 2) const uint kFrame = 0;  // 0: about n_s from x_s; 1: abo
 #define RADIVOX_HIT kHit
 #define RADIVOX_BIND_PLANE_EXTRAS 12
 #define RADIVOX_VOXEL_COUNT voxelCount
-layout(set = 0, binding = 9, scalar) readonly buffer Directions { vec3 directions[]; };  // M a rotation
+layout(set = 0, binding = 9, scalar) uniform Directions { uint directions[kShiftCount * kMaxRays]; };  // M a shift
 layout(set = 0, binding = 10, scalar) readonly buffer Order { uint order[]; };          // rows of the chunk as lanes take them
 layout(set = 0, binding = 11, scalar) writeonly buffer Hits { uint hits[]; };            // M a row
 layout(push_constant, scalar) uniform Push {
@@ -31,7 +32,6 @@ layout(push_constant, scalar) uniform Push {
   float nearDistance;  // voxels; hits up to here keep their face
   uint voxelCount;
 };
-#include "clustered_voxel/visibility/visibility.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_cast.glsl"
 
@@ -41,9 +41,11 @@ void main() {
   uint item = radivoxItemIndex();
   uint slot = item % lanes;
   uint ray = (item / lanes) * kRaysPerLane;
-  if (slot >= rowCount || ray >= rayCount) return;
   uint end = min(ray + kRaysPerLane, rayCount);
-  uint row = order[slot];
+  // No lane leaves early (see castMarch): those without a row follow the last one's and write nothing.
+  bool idle = slot >= rowCount;
+  uint row = order[min(slot, rowCount - 1u)];
+  if (idle) end = ray;
   uint s = firstFace + row;
   Face face = faces[s];
   uint startVoxel = face.key >> 3;
@@ -58,39 +60,45 @@ void main() {
     n = faceVector(face.key & 7u);
     start += n;
     origin = vec3(coordinate) + 0.5 + 0.5 * n;
+    excluded = 0u;
   } else if (kHit == kHitPlane) {
     excluded = ownPlanes(startVoxel, coordinate, position, n, crowded);
   }
-  uint table = rotationOf(s) * rayCount;
+  uint table = shiftOf(s) * rayCount;
 
   // Lanes go on to their next ray each on its own; those that wait do so only for the longest march.
-  TraversalRay way;
-  TraversalCursor cursor;
+  TraversalRay way = makeTraversalRay(origin, n);
+  TraversalCursor cursor = TraversalCursor(start, 0.0);
   uint inFront = 0u;
   bool fresh = true;
-  bool atStart = false;
-  while (ray < end) {
-    if (fresh) {
-      way = makeTraversalRay(origin, alongNormal(directions[table + ray], n));
-      cursor = TraversalCursor(start, 0.0);
-      inFront = 0u;
-      atStart = crowded;
-      if (kFrame == 0 && !crowded) traversalStep(way, cursor);
-    }
-    if (!atStart && castMarch(way, cursor)) inFront = 0u;
-    uint hit = kHitNothing;
+  uint last = 0u;
+  while (subgroupAny(ray < end)) {
+    bool busy = ray < end;
+    uint at = busy ? ray : max(ray, 1u) - 1u;
+    TraversalRay next = makeTraversalRay(origin, alongNormal(decodeDirection(directions[table + at]), n));
+    way.direction = mix(way.direction, next.direction, bvec3(fresh));
+    way.inverse = mix(way.inverse, next.inverse, bvec3(fresh));
+    way.forward = mix(way.forward, next.forward, bvec3(fresh));
+    cursor.voxel = mix(cursor.voxel, start, bvec3(fresh));
+    cursor.time = fresh ? 0.0 : cursor.time;
+    inFront = fresh ? 0u : inFront;
+    // On from the voxel just looked at, or from the face's own if there is nothing else in it.
+    bool stay = fresh && (crowded || kFrame == 1);
+    TraversalCursor stepped = cursor;
+    traversalStep(way, stepped);
+    cursor.voxel = mix(stepped.voxel, cursor.voxel, bvec3(stay));
+    cursor.time = stay ? cursor.time : stepped.time;
+    bool atStart = fresh && crowded;
+    if (castMarch(way, cursor, busy && !atStart)) inFront = 0u;
     bool outside = isOutside(cursor.voxel);
-    if (!outside) hit = castFace(way, cursor, atStart ? excluded : 0u, inFront, rayRandom(s, ray));
-    fresh = outside || hit != kHitNothing;
-    atStart = false;
-    if (fresh) {
-      uint result = cursor.time <= nearDistance ? hit | kNearHit : hit;
-      if (hit == kHitBack) result = kMissHit + 6u;
-      if (outside) result = kMissHit + directionBin(way.direction);
-      hits[row * rayCount + ray] = result;
-      ++ray;
-    } else {
-      traversalStep(way, cursor);
-    }
+    uint hit = castFace(way, cursor, busy, atStart ? excluded : 0u, inFront, rayRandom(s, at));
+    fresh = !busy || outside || hit != kHitNothing;
+    uint result = cursor.time <= nearDistance ? hit | kNearHit : hit;
+    result = hit == kHitBack ? kMissHit + 6u : result;
+    result = outside ? kMissHit + directionBin(way.direction) : result;
+    // Written in every pass: overwritten until the ray is done, and again as it was once all are.
+    last = busy ? result : last;
+    if (!idle) hits[row * rayCount + at] = last;
+    ray += fresh && busy ? 1u : 0u;
   }
 }

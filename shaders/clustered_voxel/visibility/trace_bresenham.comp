@@ -4,6 +4,7 @@
 // The paper's rays (4.3): Bresenham's line in three dimensions, one voxel a step along the dominant axis, to the first voxel with
 // faces. It is 26-connected and may slip between voxels that meet at an edge. Same rows and buffers as trace.comp.
 layout(local_size_x = 64) in;
+#include "clustered_voxel/visibility/visibility.h"
 layout(constant_id = 2) const uint kFrame = 1;
 
 #define RADIVOX_BIND_GRID 0
@@ -17,7 +18,7 @@ layout(constant_id = 2) const uint kFrame = 1;
 #define RADIVOX_HIT kHitVoxel
 #define RADIVOX_BIND_PLANE_EXTRAS 12
 #define RADIVOX_VOXEL_COUNT voxelCount
-layout(set = 0, binding = 9, scalar) readonly buffer Directions { vec3 directions[]; };
+layout(set = 0, binding = 9, scalar) uniform Directions { uint directions[kShiftCount * kMaxRays]; };  // M a shift
 layout(set = 0, binding = 10, scalar) readonly buffer Order { uint order[]; };
 layout(set = 0, binding = 11, scalar) writeonly buffer Hits { uint hits[]; };
 layout(push_constant, scalar) uniform Push {
@@ -27,7 +28,6 @@ layout(push_constant, scalar) uniform Push {
   float nearDistance;
   uint voxelCount;
 };
-#include "clustered_voxel/visibility/visibility.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_cast.glsl"
 
@@ -45,10 +45,10 @@ void main() {
   uvec3 coordinate = voxelCoordinate(face.key >> 3);
   vec3 n = kFrame == 1 ? faceVector(face.key & 7u) : decodeNormal(face.normal);
   int reach = int(max(grid.size.x, max(grid.size.y, grid.size.z)));
-  uint table = rotationOf(s) * rayCount;
+  uint table = shiftOf(s) * rayCount;
 
   for (; ray < end; ++ray) {
-    TraversalRay way = makeTraversalRay(vec3(0.0), alongNormal(directions[table + ray], n));
+    TraversalRay way = makeTraversalRay(vec3(0.0), alongNormal(decodeDirection(directions[table + ray]), n));
     vec3 a = abs(way.direction);
     uint axis = a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
     // The line ends `reach` voxels along the dominant axis: beyond the grid.
@@ -67,7 +67,7 @@ void main() {
     while (true) {
       if (!isInside(voxel)) break;
       uint none = 0u;
-      if (!skip) hit = castFace(way, TraversalCursor(vec3(voxel), 0.0), 0u, none, rayRandom(s, ray));
+      if (!skip) hit = castFace(way, TraversalCursor(vec3(voxel), 0.0), true, 0u, none, rayRandom(s, ray));
       if (hit != kHitNothing) break;
       skip = false;
       ++i;

@@ -4,8 +4,8 @@
 #include "../../shared/voxel_codec.h"
 RADIVOX_SHARED_BEGIN
 
-// Rotations of the direction set; a face takes one by its hash, so that neighbours do not share a pattern.
-RADIVOX_CONST uint kRotationCount = 16u;
+// Shifts of the direction set; a face takes one by its hash, so that neighbours do not share a pattern.
+RADIVOX_CONST uint kShiftCount = 16u;
 // Rays that one lane traces, one after the other.
 RADIVOX_CONST uint kRaysPerLane = 32u;
 
@@ -22,7 +22,7 @@ RADIVOX_FUNCTION uint hashBits(uint x) {
   x ^= x >> 16;
   return x;
 }
-RADIVOX_FUNCTION uint rotationOf(uint face) { return hashBits(face) % kRotationCount; }
+RADIVOX_FUNCTION uint shiftOf(uint face) { return hashBits(face) % kShiftCount; }
 RADIVOX_FUNCTION uint rayRandom(uint face, uint ray) { return hashBits(face * kMaxRays + ray + 0x9e3779b9u); }
 
 // Direction bin of a miss: the dominant axis, numbered as faces are.
@@ -30,6 +30,16 @@ RADIVOX_FUNCTION uint directionBin(vec3 d) {
   vec3 a = abs(d);
   uint axis = a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
   return 2u * axis + (d[axis] < 0.0f ? 1u : 0u);
+}
+
+// A direction of the upper hemisphere ↔ its place on the unit disc, unorm16 × 2: a word each, so that kShiftCount · kMaxRays of them
+// fit the smallest uniform buffer that a device may have.
+RADIVOX_FUNCTION vec3 decodeDirection(uint code) {
+  RADIVOX_PRECISE float x = float(code & 0xffffu) * (2.0f / 65535.0f) - 1.0f;
+  RADIVOX_PRECISE float y = float(code >> 16) * (2.0f / 65535.0f) - 1.0f;
+  RADIVOX_PRECISE float squared = max(1.0f - x * x - y * y, 1e-8f);
+  RADIVOX_PRECISE float z = squared * preciseInverseSqrt(squared);
+  return vec3(x, y, z);
 }
 
 // Local direction (z along n) into the frame of n; the two other axes after Duff et al., "Building an Orthonormal Basis, Revisited" (2017).
