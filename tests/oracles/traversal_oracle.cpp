@@ -129,7 +129,10 @@ struct Caster {
       vec3 n = plane.normal(s);
       if (dot(direction, n) > 0.f) n = -n;
       uint32_t looks = 0;
-      for (uint32_t k = 0; k < 3; ++k) looks |= n[k] * direction[k] < 0.f ? 1u << facing(k) : 0u;
+      for (uint32_t k = 0; k < 3; ++k) {
+        const bool member = (plane.faces & (3u << (2 * k))) != 0;  // a face of this direction, or its back
+        if (member && n[k] * direction[k] < 0.f) looks |= 1u << facing(k);
+      }
       float before = 0.f, whole = 1.f;
       bool hit = looks != 0;
       if (!voxelHit) {
@@ -147,7 +150,7 @@ struct Caster {
         bestBefore = before;
         bestWhole = whole;
         bestNormal = n;
-        bestFaces = (plane.faces & looks) != 0 ? plane.faces & looks : s.mask[voxel] & looks;
+        bestFaces = plane.faces & looks;
       }
     }
     if (!found) return kOracleMiss;
