@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "samples/cli/assets.h"
+#include "samples/cli/cache.h"
 #include "samples/cli/interrupt.h"
 #include "samples/cli/picture.h"
 #include "samples/cli/progress.h"
@@ -112,6 +113,7 @@ int runRender(const Options& options) {
   gpu::DeviceOptions deviceOptions;
   deviceOptions.index = parseDevice(options.device);
   deviceOptions.validation = options.validate;
+  deviceOptions.pipelineCacheFile = pipelineCacheFile();
   deviceOptions.onMessage = [](const std::string& message) {
     std::string line = message;
     std::replace(line.begin(), line.end(), '\n', ' ');
