@@ -1,7 +1,8 @@
 // frame.composite — radiance on screen: L = ρ (E_direct + E_indirect) / π + L_e.
 //
 // reads   gbuffer albedo, emission; irradiance? = direct.irradiance; indirect? = any method's irradiance image (a: sky visibility);
-// scene.info writes  color              image RGBA32F  radiance towards the viewer, W/(m² sr); sky pixels: the sky's; a: 1 surface, 0 sky
+//         scene.info
+// writes  color              image RGBA32F  radiance towards the viewer, W/(m² sr); sky pixels: the sky's; a: 1 surface, 0 sky
 //         direct?            image RGBA32F  ρ E_direct / π, with the sky's light
 //         indirect_radiance? image RGBA32F  ρ E_indirect / π
 //         irradiance_direct? image RGBA32F  E_direct with the sky's light, W/m²

@@ -1,9 +1,11 @@
 // clustered_voxel.filter — smooths gathered irradiance over the surface, lazily, without crossing walls.
 //
-// reads   shown, the voxel structure, gathered irradiance; cluster_radiosity and row_start only to notice that the light or the rays
-// changed writes  irradiance* vec4 × F, valid* bits × F, status u32 × 2 (faces filtered by this run) runs    when shown faces or gathered
-// irradiance change; filters faces that are shown and not yet valid cost    passes × filtered faces × (2 radius + 1)³ look-ups source  the
-// paper (4.4) blurs twice with a 5³ Gaussian over same-direction faces and drops unlit ones, which adds energy in shadow;
+// reads   shown, needed, the voxel structure, gathered irradiance; cluster_radiosity and row_start only to notice that the light or the
+//         rays changed
+// writes  irradiance* vec4 × F, valid* bits × F, status u32 × 4 (faces filtered by this run, then dispatch arguments)
+// runs    when shown faces or gathered irradiance change; filters faces that are shown and not yet valid
+// cost    passes × filtered faces × (2 radius + 1)³ look-ups
+// source  the paper (4.4) blurs twice with a 5³ Gaussian over same-direction faces and drops unlit ones, which adds energy in shadow;
 //         weights=gaussian is that. weights=surface (default) also weighs by area, normal and plane agreement, keeps dark faces, and
 //         does not look through a voxel face that stands between the two.
 #pragma once

@@ -5,9 +5,8 @@
 // runs    when the view, the voxels or the radiosity change
 // cost    pixels × rays grid walks, then one pass of 25 reads a pixel (and 25 more a `smooth` pass)
 // source  beyond the paper (METHODS section 1, "The receiver is where the error sits"): irradiance interpolated over voxels loses
-// near-field
-//         light and shadow. Here neighbouring pixels trace different parts of one low-discrepancy set: any 4×4 block of pixels holds 16 ×
-//         rays directions, and a filter over such blocks, which stops at edges of the surface, puts them together.
+//         near-field light and shadow. Here neighbouring pixels trace different parts of one low-discrepancy set: any 4×4 block of pixels
+//         holds 16 × rays directions, and a filter over such blocks, which stops at edges of the surface, puts them together.
 //
 // A ray does not stop at whole voxels but at the mean plane of the surface in them (x_s, n_s), where it crosses that plane within the
 // voxel: the receiver's own flat surface never shades itself, and contact shadows are finer than the voxels.
