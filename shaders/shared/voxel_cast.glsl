@@ -129,6 +129,7 @@ uint ownPlanes(uint voxel, uvec3 coordinate, vec3 position, vec3 normal, out boo
   uint own = 0u;
   crowded = false;
   uvec2 plane = planes[voxel];
+  if (plane.x >> 26 == 0u) return own;
   for (uint i = 0u; i < kFaceCount; ++i) {
     vec3 n = planeNormal(plane.x);
     precise vec3 center = vec3(coordinate) + decodePosition(plane.y);

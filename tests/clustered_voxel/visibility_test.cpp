@@ -1,160 +1,140 @@
-// clustered_voxel.visibility against the CPU traversal (rows, bit for bit), closed-form factors, and exact rays.
+// clustered_voxel.visibility: rows against the CPU traversal, bit for bit, and what it promises of them.
 #include "modules/clustered_voxel/visibility/visibility.h"
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-#include <random>
-
-#include "modules/clustered_voxel/visibility/directions.h"
-#include "shaders/clustered_voxel/visibility/visibility.h"
-#include "shaders/shared/clearance.h"
+#include "shaders/shared/voxel.h"
+#include "tests/clustered_voxel/visibility_run.h"
 #include "tests/oracles/gpu_fixture.h"
-#include "tests/oracles/node_harness.h"
-#include "tests/oracles/traversal_oracle.h"
 
 namespace radivox {
 namespace {
 
-using oracle::Soup;
+using oracle::buildVoxelStructures;
+using oracle::checkRows;
+using oracle::Row;
+using oracle::runLabels;
+using oracle::VisibilityRun;
 using oracle::VisibilitySettings;
 using oracle::VoxelStructures;
-using Row = std::map<uint32_t, uint32_t>;
 
 class VisibilityTest : public oracles::GpuTest {};
 
-/// Clusters for tests: faces in runs of `size`.
-std::vector<uint32_t> runLabels(size_t faceCount, uint32_t size) {
-  std::vector<uint32_t> labels(faceCount);
-  for (size_t i = 0; i < faceCount; ++i) labels[i] = static_cast<uint32_t>(i) / size;
-  return labels;
-}
-
-struct NodeRun {
-  NodeRun(gpu::Device& device, const VoxelStructures& s, const VisibilitySettings& settings, const std::string& skip = "clearance",
-          uint32_t clusterSize = 7)
-      : faceCount(s.faces.size()), labels(runLabels(s.faces.size(), clusterSize)), harness(device) {
-    clusterCount = labels.empty() ? 0 : labels.back() + 1;
-    harness.add<clustered_voxel::Visibility>("visibility");
-    harness.importValue("in.grid", s.grid);
-    // A buffer of nothing cannot be bound: tests of the empty scene import one spare element.
-    const auto import = [&](const std::string& name, auto data) {
-      if (data.empty()) data.resize(1);
-      harness.importBuffer("in." + name, data);
-    };
-    import("occupancy", s.occupancy);
-    import("rank", s.rank);
-    import("voxels", s.voxels);
-    import("distance", s.distance);
-    import("mask", s.mask);
-    import("first", s.first);
-    import("faces", s.faces);
-    import("labels", labels);
-    for (const char* port : {"grid", "occupancy", "rank", "voxels", "distance", "mask", "first", "faces", "labels"}) {
-      harness.connect(std::string("in.") + port, std::string("visibility.") + port);
-    }
-    harness.setCount("faces", faceCount);
-    harness.setCount("clusters", clusterCount);
-    harness.setCount("voxels", s.voxels.size());
-    harness.set("visibility.rays", std::to_string(settings.rays));
-    harness.set("visibility.traversal", settings.bresenham ? "bresenham" : "dda");
-    harness.set("visibility.frame", settings.axisFrame ? "axis" : "normal");
-    harness.set("visibility.hit", settings.voxelHit ? "voxel" : "plane");
-    harness.set("visibility.near", std::to_string(settings.near));
-    harness.set("visibility.skip", skip);
-    for (const char* port : {"row_start", "entries", "chunk_table", "clearance"}) harness.output(std::string("visibility.") + port);
-    harness.run();
-  }
-
-  std::vector<Row> rows() {
-    const auto starts = harness.download<uint32_t>("visibility.row_start");
-    const auto chunks = harness.downloadGrown<uint32_t>("visibility.entries");
-    std::vector<Row> all(faceCount);
-    for (size_t s = 0; s < faceCount; ++s) {
-      const size_t chunk = s / shared::kRowsPerChunk, slot = s + chunk;
-      for (uint32_t e = starts[slot]; e < starts[slot + 1]; ++e) {
-        const uint32_t entry = chunks.at(chunk).at(e);
-        const bool fresh = all[s].emplace(entry & shared::kEntryIdMask, (entry >> 24) + 1).second;
-        EXPECT_TRUE(fresh) << "an id twice in row " << s;
-      }
-    }
-    return all;
-  }
-
-  size_t faceCount;
-  std::vector<uint32_t> labels;
-  uint32_t clusterCount = 0;
-  oracles::NodeHarness harness;
-};
-
-/// Rows of the node and of the oracle, which must be equal.
-std::vector<Row> checkRows(gpu::Device& device, const VoxelStructures& s, const VisibilitySettings& settings,
-                           const std::string& skip = "clearance") {
-  NodeRun run(device, s, settings, skip);
-  const std::vector<Row> rows = run.rows();
-  const std::vector<Row> expected = oracle::visibilityRows(s, settings, run.labels, run.clusterCount);
-  size_t different = 0;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i] == expected[i]) continue;
-    if (different++ == 0) {
-      std::string text;
-      for (const auto& [id, n] : rows[i]) text += " " + std::to_string(id) + ":" + std::to_string(n);
-      text += " instead of";
-      for (const auto& [id, n] : expected[i]) text += " " + std::to_string(id) + ":" + std::to_string(n);
-      ADD_FAILURE() << "row " << i << ":" << text;
-    }
-  }
-  EXPECT_EQ(different, 0u) << "of " << rows.size() << " rows";
-  for (const Row& row : rows) {
-    uint32_t sum = 0;
-    for (const auto& [id, n] : row) sum += n;
-    EXPECT_EQ(sum, settings.rays);
-  }
-  return rows;
-}
-
-/// A room with two boxes in it, one turned: like the Cornell box, open to the front.
-Soup room() {
-  Soup soup;
-  oracle::addQuad(soup, {0, 0, 0}, {0, 0, 1}, {1, 0, 0});
-  oracle::addQuad(soup, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
-  oracle::addQuad(soup, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  oracle::addQuad(soup, {0, 0, 0}, {0, 1, 0}, {0, 0, 1});
-  oracle::addQuad(soup, {1, 0, 0}, {0, 0, 1}, {0, 1, 0});
-  oracle::addBox(soup, {0.55f, 0.f, 0.5f}, {0.85f, 0.31f, 0.82f}, glm::vec3(0.5f), false);
-  const glm::vec3 u(0.27f, 0.f, 0.1f), v(-0.1f, 0.f, 0.27f), w(0.f, 0.6f, 0.f), c(0.2f, 0.f, 0.2f);
-  oracle::addQuad(soup, c, w, u);
-  oracle::addQuad(soup, c + v, u, w);
-  oracle::addQuad(soup, c, v, w);
-  oracle::addQuad(soup, c + u, w, v);
-  oracle::addQuad(soup, c + w, v, u);
-  return soup;
-}
-
-Soup randomSoup(uint32_t seed, uint32_t triangles) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> unit(0.f, 1.f);
-  const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
-  Soup soup(triangles);
-  for (auto& t : soup) {
-    const glm::vec3 center = point();
-    for (glm::vec3& p : t.position) p = center + 0.25f * (point() - 0.5f);
-    t.doubleSided = (random() & 1u) != 0;
-  }
-  return soup;
-}
-
 TEST_F(VisibilityTest, RowsEqualTheCpuTraversal) {
-  for (const uint32_t n : {16u, 32u}) checkRows(device(), oracle::buildVoxelStructures(room(), n), {.rays = 32});
+  for (const uint32_t n : {16u, 32u}) checkRows(device(), buildVoxelStructures(oracle::roomSoup(), n), {.rays = 32});
 }
 
 TEST_F(VisibilityTest, RandomSoupsAndOneSidedSurfaces) {
   for (uint32_t seed = 1; seed <= 4; ++seed) {
-    const VoxelStructures s = oracle::buildVoxelStructures(randomSoup(seed, 24), 12 + 5 * seed, seed % 2 == 0);
+    const bool bothSides = seed % 2 == 0;
+    const VoxelStructures s = buildVoxelStructures(oracle::randomSoup(seed, 24), 12 + 5 * seed, bothSides);
     const std::vector<Row> rows = checkRows(device(), s, {.rays = 48, .near = 4.f});
     uint32_t absorbed = 0;
     for (const Row& row : rows) absorbed += row.count(shared::kAbsorbed) != 0 ? 1 : 0;
-    EXPECT_EQ(absorbed > 0, seed % 2 == 1);
+    EXPECT_EQ(absorbed > 0, !bothSides);
+  }
+}
+
+TEST_F(VisibilityTest, EveryVariantEqualsItsDefinition) {
+  const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 20);
+  for (const bool axis : {false, true}) {
+    for (const bool voxel : {false, true}) checkRows(device(), s, {.rays = 24, .axisFrame = axis, .voxelHit = voxel});
+    checkRows(device(), s, {.rays = 24, .bresenham = true, .axisFrame = axis, .near = 3.f});
+  }
+  const VoxelStructures oneSided = buildVoxelStructures(oracle::randomSoup(7, 20), 16, false);
+  checkRows(device(), oneSided, {.rays = 16, .bresenham = true, .axisFrame = true});
+  checkRows(device(), oneSided, {.rays = 16, .voxelHit = true});
+}
+
+TEST_F(VisibilityTest, AnyNumberOfRays) {
+  const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 12);
+  for (const uint32_t rays : {1u, 2u, 3u, 31u, 33u, 100u, 255u, 256u}) checkRows(device(), s, {.rays = rays});
+}
+
+TEST_F(VisibilityTest, NearHitsKeepTheirFace) {
+  const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 16);
+  for (const float near : {0.f, 1.f, 6.f, 4096.f}) {
+    const std::vector<Row> rows = checkRows(device(), s, {.rays = 32, .near = near});
+    const uint32_t clusters = runLabels(s.faces.size(), 7).back() + 1;
+    uint32_t faces = 0, far = 0;
+    for (const Row& row : rows) {
+      for (const auto& [id, n] : row) (id < clusters ? far : faces) += id < shared::kMissBase ? n : 0;
+    }
+    EXPECT_EQ(far == 0, near == 4096.f);
+    EXPECT_GT(faces, 0u);  // a start on another voxel's border hits at distance 0
+  }
+}
+
+TEST_F(VisibilityTest, ManyChunksAndEveryWayOverEmptySpace) {
+  // More than two chunks of faces: rows are found again in theirs, and leaping changes nothing.
+  const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 64);
+  ASSERT_GT(s.faces.size(), 2 * shared::kRowsPerChunk);
+  const VisibilitySettings settings{.rays = 6};
+  const std::vector<uint32_t> labels = runLabels(s.faces.size(), 7);
+  VisibilityRun clearance(device(), s, settings, labels, "clearance");
+  const std::vector<Row> rows = clearance.rows();
+  oracle::expectSameRows(rows, oracle::visibilityRows(s, settings, labels, clearance.clusterCount));
+  const std::vector<uint32_t> words = clearance.rawOutput();
+  for (const char* skip : {"bricks", "none"}) EXPECT_EQ(VisibilityRun(device(), s, settings, labels, skip).rawOutput(), words) << skip;
+  EXPECT_GT(clearance.harness.figure("visibility", "mrays_per_second"), 0.0);
+  EXPECT_EQ(clearance.harness.figure("visibility", "rays"), 6.0 * static_cast<double>(s.faces.size()));
+}
+
+TEST_F(VisibilityTest, TwoRunsSameBits) {
+  const VoxelStructures s = buildVoxelStructures(oracle::randomSoup(3, 40), 40);
+  const std::vector<uint32_t> labels = runLabels(s.faces.size(), 5);
+  VisibilityRun run(device(), s, {.rays = 64}, labels);
+  const std::vector<uint32_t> words = run.rawOutput();
+  EXPECT_EQ(VisibilityRun(device(), s, {.rays = 64}, labels).rawOutput(), words);
+  // Running again after a change and back frees and makes all chunks anew.
+  run.harness.set("visibility.near", "2");
+  EXPECT_NE(run.rawOutput(), words);
+  run.harness.set("visibility.near", "8");
+  EXPECT_EQ(run.rawOutput(), words);
+  EXPECT_EQ(run.harness.runCount("visibility"), 3u);
+}
+
+TEST_F(VisibilityTest, GridsOneVoxelThick) {
+  // A sheet in a plane of the grid: one voxel across it. Rays leave at once or run along it.
+  for (int axis = 0; axis < 3; ++axis) {
+    oracle::Soup soup;
+    glm::vec3 u(0.f), v(0.f);
+    u[(axis + 1) % 3] = 1.f;
+    v[(axis + 2) % 3] = 1.f;
+    oracle::addQuad(soup, glm::vec3(0.f), u, v);
+    const VoxelStructures s = buildVoxelStructures(soup, 9);
+    ASSERT_EQ(s.grid.size[axis], 1u);
+    for (const char* skip : {"clearance", "bricks", "none"}) checkRows(device(), s, {.rays = 32}, skip);
+    checkRows(device(), s, {.rays = 32, .axisFrame = true, .voxelHit = true});
+    checkRows(device(), s, {.rays = 32, .bresenham = true, .axisFrame = true});
+  }
+}
+
+TEST_F(VisibilityTest, EmptySceneHasNoRows) {
+  VoxelStructures s = buildVoxelStructures({}, 16);
+  if (s.occupancy.empty()) {
+    s.grid.size = s.grid.bricks = glm::uvec3(1);
+    s.grid.brickCount = 1;
+    s.occupancy.resize(1);
+  }
+  VisibilityRun run(device(), s, {.rays = 16}, {});
+  EXPECT_TRUE(run.rows().empty());
+  EXPECT_EQ(run.harness.count("entries"), 0u);
+}
+
+TEST_F(VisibilityTest, TooManyIdsNameTheResolutionThatFits) {
+  const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 16);
+  std::vector<uint32_t> labels = runLabels(s.faces.size(), 7);
+  labels.back() = shared::kMissBase - static_cast<uint32_t>(labels.size()) - 1;  // the last id is kMissBase − 1: it fits
+  VisibilityRun(device(), s, {.rays = 2}, labels).rows();
+  ++labels.back();
+  VisibilityRun run(device(), s, {.rays = 2}, labels);
+  try {
+    run.harness.run();
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::OutOfMemory);
+    EXPECT_NE(std::string(error.what()).find("voxelize.resolution=15"), std::string::npos) << error.what();
   }
 }
 

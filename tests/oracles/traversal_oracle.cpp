@@ -250,7 +250,7 @@ RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& setti
   for (int k = 0; k < 3; ++k) direction[k] = std::fabs(direction[k]) < kFlat ? 0.f : direction[k];
   const uint32_t random = shared::rayRandom(face, ray);
   const ivec3 own(coordinate);
-  const ivec3 start = settings.axisFrame ? own + ivec3(axis) : own;
+  ivec3 start = settings.axisFrame ? own + ivec3(axis) : own;
   RayResult result;
   result.direction = direction;
   uint32_t inFront = 0;
@@ -271,11 +271,19 @@ RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& setti
     return result;
   }
 
-  const vec3 origin = settings.axisFrame ? vec3(coordinate) + 0.5f + 0.5f * axis : shared::liftedOrigin(position, n, coordinate);
+  const vec3 origin = settings.axisFrame ? vec3(coordinate) + 0.5f + 0.5f * axis : shared::liftedOrigin(position, n);
+  if (!settings.axisFrame && !settings.voxelHit) {
+    start = glm::clamp(ivec3(glm::floor(origin)), ivec3(0), ivec3(s.grid.size) - 1);
+  }
   const Caster caster{s, settings.voxelHit, origin, direction};
-  const uint32_t excluded = settings.voxelHit ? 0x3fu : ownPlanes(s, key >> 3, position, n);
+  uint32_t excluded = 0;
+  if (settings.voxelHit) {
+    excluded = 0x3fu;
+  } else if (s.voxelIndex(start) != shared::kNone) {
+    excluded = ownPlanes(s, s.voxelIndex(start), position, n);
+  }
   walkVoxels(s.grid.size, origin, direction, start, [&](const VoxelVisit& visit) {
-    const bool atOwn = !settings.axisFrame && visit.voxel == own;
+    const bool atOwn = !settings.axisFrame && visit.voxel == start;
     result.face = caster.cast(visit, atOwn ? excluded : 0u, inFront, random);
     result.distance = visit.entry;
     return result.face == kOracleMiss;

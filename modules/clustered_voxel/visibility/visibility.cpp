@@ -175,7 +175,7 @@ void Visibility::begin(graph::RecordContext& context) {
   const std::vector<std::byte> raw = context.readBuffer("grid", 0, sizeof(grid_));
   std::memcpy(&grid_, raw.data(), sizeof(grid_));
   const uint64_t ids = context.count("faces") + context.count("clusters");
-  if (ids >= shared::kMissBase) {
+  if (ids > shared::kMissBase) {
     // Faces grow with N² and clusters hardly.
     const uint32_t resolution = std::max({grid_.size.x, grid_.size.y, grid_.size.z});
     const double fits = std::sqrt(static_cast<double>(shared::kMissBase) / static_cast<double>(ids)) * 0.98 * resolution;

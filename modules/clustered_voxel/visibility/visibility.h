@@ -12,8 +12,8 @@
 //         of scratch; 4 bytes an entry; one byte a voxel of the grid (twice while it is made)
 // source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
 //
-// Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. Rays start at x_s (within their voxel
-// lifted by 0.05 h); which face stops a ray is told, with what was measured, in shaders/shared/voxel_cast.glsl. A hit nearer than
+// Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. Rays start at x_s,
+// lifted by 0.05 h; which face stops a ray is told, with what was measured, in shaders/shared/voxel_cast.glsl. A hit nearer than
 // `near` keeps its face's id, a farther one becomes its cluster's. Misses count by direction bin, backs of one-sided surfaces as
 // kAbsorbed, so that rows always sum to M.
 //

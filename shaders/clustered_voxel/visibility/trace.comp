@@ -48,27 +48,29 @@ void main() {
   if (idle) end = ray;
   uint s = firstFace + row;
   Face face = faces[s];
-  uint startVoxel = face.key >> 3;
-  uvec3 coordinate = voxelCoordinate(startVoxel);
+  uvec3 coordinate = voxelCoordinate(face.key >> 3);
   vec3 position = facePosition(face, coordinate);
   vec3 n = decodeNormal(face.normal);
-  vec3 origin = liftedOrigin(position, n, coordinate);
-  vec3 start = vec3(coordinate);
+  vec3 origin = liftedOrigin(position, n);
+  // The lift may lead over the border: a scrap of surface in a voxel's corner lies behind its neighbour's plane.
+  ivec3 start = clamp(ivec3(floor(origin)), ivec3(0), ivec3(castSize) - 1);
   uint excluded = 0x3fu;
-  bool crowded = false;  // other surface in the voxel of the face
+  bool crowded = false;  // other surface where the rays start
   if (kFrame == 1) {
     n = faceVector(face.key & 7u);
-    start += n;
+    start = ivec3(coordinate) + ivec3(n);
     origin = vec3(coordinate) + 0.5 + 0.5 * n;
-    excluded = 0u;
   } else if (kHit == kHitPlane) {
-    excluded = ownPlanes(startVoxel, coordinate, position, n, crowded);
+    uint voxel = voxelIndex(start);
+    if (voxel != kNone) excluded = ownPlanes(voxel, uvec3(start), position, n, crowded);
+  } else {
+    start = ivec3(coordinate);
   }
   uint table = shiftOf(s) * rayCount;
 
   // Lanes go on to their next ray each on its own; those that wait do so only for the longest march.
   TraversalRay way = makeTraversalRay(origin, n);
-  TraversalCursor cursor = TraversalCursor(start, 0.0);
+  TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   uint inFront = 0u;
   bool fresh = true;
   uint last = 0u;
@@ -79,7 +81,7 @@ void main() {
     way.direction = mix(way.direction, next.direction, bvec3(fresh));
     way.inverse = mix(way.inverse, next.inverse, bvec3(fresh));
     way.forward = mix(way.forward, next.forward, bvec3(fresh));
-    cursor.voxel = mix(cursor.voxel, start, bvec3(fresh));
+    cursor.voxel = mix(cursor.voxel, vec3(start), bvec3(fresh));
     cursor.time = fresh ? 0.0 : cursor.time;
     inFront = fresh ? 0u : inFront;
     // On from the voxel just looked at, or from the face's own if there is nothing else in it.

@@ -55,11 +55,10 @@ RADIVOX_FUNCTION vec3 alongNormal(vec3 local, vec3 n) {
   return vec3(x, y, z);
 }
 
-// Where the rays of a face start (frame=normal): x_s lifted a little, within its voxel.
-RADIVOX_FUNCTION vec3 liftedOrigin(vec3 position, vec3 n, uvec3 voxel) {
+// Where the rays of a face start (frame=normal): x_s, lifted a little.
+RADIVOX_FUNCTION vec3 liftedOrigin(vec3 position, vec3 n) {
   RADIVOX_PRECISE vec3 lifted = position + 0.05f * n;
-  vec3 low = vec3(voxel);
-  return min(max(lifted, low), low + 1.0f);
+  return lifted;
 }
 
 RADIVOX_SHARED_END
