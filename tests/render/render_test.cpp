@@ -165,6 +165,44 @@ TEST_F(Render, FurnaceIsExactAtEveryFace) {
   }
 }
 
+TEST_F(Render, PixelReceiverIsExactInAFurnace) {
+  PipelineOptions options = small(16);
+  options.graph = "clustered_voxel_pixels";
+  options.outputs = {"composite.color", "gather_pixels.irradiance"};
+  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("furnace", {{"albedo", "0.5"}}), options);
+  p.run();
+  const image::Image irradiance = p.picture4("gather_pixels.irradiance");
+  for (size_t i = 0; i < irradiance.data.size(); i += 4) {
+    ASSERT_NEAR(irradiance.data[i], 0.5f, 1e-3f) << "pixel " << i / 4;
+    ASSERT_EQ(irradiance.data[i + 3], 0.f) << "a ray left the closed box from pixel " << i / 4;
+  }
+}
+
+// The paper's 18 points lie all about the voxel: below a plane they are in its shadow, so it finds part of the light, and never more than there is.
+TEST_F(Render, PaperPointsInjectPartOfTheCosine) {
+  scene::Scene s = scene::makeBuiltin("plane");
+  s.lights.clear();
+  scene::PunctualLight sun;
+  sun.direction = glm::normalize(glm::vec3(0.62f, -1.f, 0.19f));
+  sun.intensity = glm::vec3(10.f);
+  s.lights.push_back(sun);
+  PipelineOptions options = small(24);
+  options.settings.push_back({"inject.method", "points"});
+  options.outputs = {"composite.color", "surface.faces", "inject.face_irradiance"};
+  Pipeline p(oracles::sharedDevice(), s, options);
+  p.run();
+  const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+  const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance");
+  const float cosine = -sun.direction.y;
+  size_t lit = 0;
+  for (size_t i = 0; i < faces.size(); ++i) {
+    const bool isTop = (faces[i].key & 7u) == 2u;
+    EXPECT_LE(irradiance[i].x, isTop ? 10.01f * cosine : 0.f);
+    lit += isTop && irradiance[i].x > 3.f * cosine;
+  }
+  EXPECT_GT(lit, faces.size() / 3);
+}
+
 TEST_F(Render, SunOnAPlaneInjectsItsCosine) {
   scene::Scene s = scene::makeBuiltin("plane");
   s.lights.clear();
