@@ -29,7 +29,7 @@ struct Face {
   float area;      // a_s in h²: Σ area · max(0, n·e_f)
   uint normal;     // n_s, octahedral snorm16 × 2
   uint position;   // x_s inside the voxel, unorm 10:10:10, x low
-  uvec2 albedo;    // ρ_s, unorm16: r | g << 16, b
+  uvec2 albedo;    // ρ_s, unorm16: r | g << 16, b | margins << 16, see faceMargins
 };
 
 struct Cluster {

@@ -94,6 +94,12 @@ RADIVOX_FUNCTION vec3 decodeAlbedo(uvec2 code) {
   return vec3(r, g, b);
 }
 
+// Where in its voxel a face's surface ends, seen along the face's axis k: how many sixteenths of the voxel are free of it at the low and the
+// high end of axis u = (k + 1) % 3, and of v = (k + 2) % 3: low u | high u << 4 | low v << 8 | high v << 12. 0: it may be anywhere.
+RADIVOX_CONST uint kMarginSteps = 16u;
+RADIVOX_FUNCTION uint faceMargins(Face face) { return face.albedo.y >> 16; }
+RADIVOX_FUNCTION uvec2 withMargins(uvec2 albedo, uint margins) { return uvec2(albedo.x, (albedo.y & 0xffffu) | margins << 16); }
+
 // Metres (relative to Scene::origin) → grid space: the one expression that every stage uses.
 RADIVOX_FUNCTION vec3 toGridSpace(Grid g, vec3 position) {
   RADIVOX_PRECISE vec3 offset = position - g.origin;

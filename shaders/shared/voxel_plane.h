@@ -7,13 +7,12 @@ RADIVOX_SHARED_BEGIN
 // Faces of a voxel whose mean planes agree share one, that of the largest face (the lowest of equals): four of five voxels have a
 // single plane. Two words each, so that a voxel's fits beside its neighbours' in a cache line: the plane of the voxel's largest
 // face at its compact index, the others, where kPlaneMore says so, from V + planeExtras[voxel] on.
-//   word 0: normal, octahedral snorm10 × 2 | faces on the plane << 20 | faces of the voxel << 26 (0: no planes)
-//   word 1: point x inside the voxel, unorm 10:10:10 | kPlaneBounded | kPlaneMore
-RADIVOX_CONST uint kPlaneBounded = 0x40000000u;  // the surface ends within its reach about x, see voxel_cast.glsl
+//   word 0: normal n, octahedral snorm10 × 2 | faces on the plane << 20 | faces of the voxel << 26 (0: no planes)
+//   word 1: n·x in steps of kPlaneStep, 13 bits signed | faceMargins of the largest face << 13 | its axis << 29 | kPlaneMore
 RADIVOX_CONST uint kPlaneMore = 0x80000000u;     // another plane follows
+RADIVOX_CONST float kPlaneStep = 1.0f / 4095.0f;  // |n·x| ≤ 1, since |n.x| + |n.y| + |n.z| = 1 and x lies in the unit cube
 RADIVOX_CONST float kSamePlaneCosine = 0.99f;    // 8°
 RADIVOX_CONST float kSamePlaneDistance = 0.05f;  // voxels
-RADIVOX_CONST float kCoverFull = 0.95f;          // a_f from which a face fills its voxel
 
 // The octahedral coordinates of Face::normal in 10 bits each: within 0.2°.
 RADIVOX_FUNCTION uint planeNormalCode(uint faceNormal) {
@@ -31,11 +30,15 @@ RADIVOX_FUNCTION vec3 planeNormal(uint word0) {
   RADIVOX_PRECISE float foldedY = y + (y >= 0.0f ? -fold : fold);
   return vec3(foldedX, foldedY, z);
 }
-// The axis that a plane lies across: the largest of |n|, the lowest of equals.
-RADIVOX_FUNCTION uint planeAxis(vec3 n) {
-  vec3 a = abs(n);
-  return a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
+RADIVOX_FUNCTION uint encodePlaneOffset(vec3 n, vec3 x) {
+  RADIVOX_PRECISE float two = n.x * x.x + n.y * x.y;
+  RADIVOX_PRECISE float offset = two + n.z * x.z;
+  RADIVOX_PRECISE float steps = floor(offset * 4095.0f + 0.5f);
+  return uint(int(steps)) & 0x1fffu;
 }
+RADIVOX_FUNCTION float planeOffset(uint word1) { return float(int(word1 << 19) >> 19) * kPlaneStep; }
+RADIVOX_FUNCTION uint planeMargins(uint word1) { return (word1 >> 13) & 0xffffu; }
+RADIVOX_FUNCTION uint planeAxis(uint word1) { return (word1 >> 29) & 3u; }
 
 RADIVOX_SHARED_END
 #endif

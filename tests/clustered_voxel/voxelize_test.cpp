@@ -107,7 +107,7 @@ void expectFaces(const VoxelStructures& expected, const VoxelStructures& got) {
   for (const shared::Face& face : expected.faces) expectedArea += face.area;
   for (const shared::Face& face : got.faces) gotArea += face.area;
   EXPECT_NEAR(gotArea, expectedArea, 1e-4 * expectedArea + 1e-6);
-  size_t compared = 0;
+  size_t compared = 0, tooWide = 0;
   for (uint32_t i = 0; i < expected.faces.size(); ++i) {
     const shared::Face& want = expected.faces[i];
     if (want.area < 1e-3f) continue;
@@ -124,10 +124,18 @@ void expectFaces(const VoxelStructures& expected, const VoxelStructures& got) {
     EXPECT_GT(glm::dot(n, m), 0.9995f) << "normal of voxel " << coordinate.x << ' ' << coordinate.y << ' ' << coordinate.z;
     EXPECT_LT(glm::length(shared::decodePosition(have.position) - shared::decodePosition(want.position)), 0.02f);
     EXPECT_LT(glm::length(shared::decodeAlbedo(have.albedo) - shared::decodeAlbedo(want.albedo)), 0.01f);
+    // The device's test of a piece against a slab may let one too many pass; a hair of surface may be lost.
+    for (uint32_t end = 0; end < 16; end += 4) {
+      const int free = static_cast<int>((shared::faceMargins(have) >> end) & 15u),
+                wanted = static_cast<int>((shared::faceMargins(want) >> end) & 15u);
+      EXPECT_LE(free, wanted + 1) << "margin at bit " << end << " of voxel " << coordinate.x << ' ' << coordinate.y << ' ' << coordinate.z;
+      tooWide += free < wanted ? 1 : 0;
+    }
     const glm::vec3 light = got.emission[face], wantedLight = expected.emission[i];
     EXPECT_LT(glm::length(light - wantedLight), 1e-3f * glm::length(wantedLight) + 1e-4f);
   }
   EXPECT_GT(compared, 0u);
+  EXPECT_LT(static_cast<double>(tooWide), 0.15 * 4.0 * static_cast<double>(compared));
 }
 
 void expectSame(const VoxelStructures& a, const VoxelStructures& b) {

@@ -57,6 +57,10 @@ struct OraclePlane {
   uint32_t largest = 0;  ///< face index
   /// The normal that rays test: of the largest face, in 10 bits a coordinate, |x| + |y| + |z| = 1.
   vec3 normal(const VoxelStructures& s) const { return shared::planeNormal(shared::planeNormalCode(s.faces[largest].normal)); }
+  /// normal·x on the plane, in 13 bits.
+  float offset(const VoxelStructures& s) const {
+    return shared::planeOffset(shared::encodePlaneOffset(normal(s), shared::decodePosition(s.faces[largest].position)));
+  }
 };
 
 /// Largest face first; those on its plane join it.
@@ -90,20 +94,16 @@ struct Caster {
   bool voxelHit;
   vec3 origin, direction;  ///< flat components are 0
 
-  /// Whether surface can be where the ray crosses the plane: `before` of `whole` of the way `passage` from `entry` (from the mean on).
-  bool covers(uint32_t largest, const vec3& n, const vec3& mean, const vec3& entry, const vec3& passage, float before, float whole) const {
+  /// Whether surface can be where the ray crosses the plane: `before` of `whole` of the way `passage` from `entry` (in the voxel) on.
+  bool covers(uint32_t largest, const vec3& entry, const vec3& passage, float before, float whole) const {
     const shared::Face& face = s.faces[largest];
-    const vec3 a = glm::abs(n);
-    uint32_t axis = 0;
-    for (uint32_t k = 1; k < 3; ++k) axis = a[k] > a[axis] ? k : axis;
-    float cover = 1.f;
-    for (uint32_t k = 0; k < 3; ++k) {
-      if (k != axis) cover *= 2.0f * std::min(mean[k], 1.0f - mean[k]);
-    }
-    if (face.area > shared::kCoverFull || cover < 0.98f * face.area) return true;
-    for (uint32_t k = 0; k < 3; ++k) {
-      const float reach = (std::min(mean[k], 1.0f - mean[k]) + 0.05f) * whole;
-      if (k != axis && std::fabs(entry[k] * whole + passage[k] * before) > reach) return false;
+    const uint32_t axis = (face.key & 7u) >> 1;
+    const uint32_t margins = shared::faceMargins(face);
+    for (uint32_t i = 0; i < 2; ++i) {
+      const uint32_t k = (axis + 1 + i) % 3;
+      const float across = entry[k] * whole + passage[k] * before;  // times whole
+      const auto low = static_cast<float>((margins >> (8 * i)) & 15u), high = static_cast<float>((margins >> (8 * i + 4)) & 15u);
+      if (across < (low * (1.f / 16.f) - 0.02f) * whole || across > ((1.f + 0.02f) - high * (1.f / 16.f)) * whole) return false;
     }
     return true;
   }
@@ -125,9 +125,10 @@ struct Caster {
       const bool counts = (own & bit) == 0;
       bit *= 2;
       if (!counts) continue;
-      const vec3 mean = shared::decodePosition(s.faces[plane.largest].position);
       vec3 n = plane.normal(s);
-      if (dot(direction, n) > 0.f) n = -n;
+      const float sign = dot(direction, n) > 0.f ? -1.f : 1.f;
+      n *= sign;
+      const float offset = plane.offset(s) * sign;
       uint32_t looks = 0;
       for (uint32_t k = 0; k < 3; ++k) {
         const bool member = (plane.faces & (3u << (2 * k))) != 0;  // a face of this direction, or its back
@@ -136,21 +137,21 @@ struct Caster {
       float before = 0.f, whole = 1.f;
       bool hit = looks != 0;
       if (!voxelHit) {
-        const vec3 entry = in - vec3(visit.voxel) - mean;
-        before = dot(entry, n);
-        const float after = dot(entry + passage, n);
+        const vec3 entry = in - vec3(visit.voxel);
+        before = dot(entry, n) - offset;
+        const float after = dot(entry + passage, n) - offset;
         hit = hit && after <= 0.f && (before >= 0.f || (was & looks) != 0);
         if (after >= -1e-3f) inFront |= looks;
         before = std::max(before, 0.f);
         whole = before - after;
-        hit = hit && covers(plane.largest, n, mean, entry, passage, before, whole) && whole > 0.f;
+        hit = hit && covers(plane.largest, entry, passage, before, whole) && whole > 0.f;
       }
       if (hit && (!found || before * bestWhole < bestBefore * whole)) {
         found = true;
         bestBefore = before;
         bestWhole = whole;
         bestNormal = n;
-        bestFaces = plane.faces & looks;
+        bestFaces = (plane.faces & looks) != 0 ? plane.faces & looks : s.mask[voxel] & looks;
       }
     }
     if (!found) return kOracleMiss;
@@ -174,8 +175,9 @@ struct Caster {
 uint32_t ownPlanes(const VoxelStructures& s, uint32_t voxel, const vec3& position, const vec3& normal) {
   uint32_t own = 0, bit = 1;
   for (const OraclePlane& plane : planesOf(s, voxel)) {
-    const bool onPlane = std::fabs(dot(s.facePosition(plane.largest) - position, normal)) < 0.25f;
     const vec3 n = plane.normal(s);
+    const float distance = dot(position - vec3(s.voxelCoordinate(voxel)), n) - plane.offset(s);
+    const bool onPlane = distance * distance < 0.25f * 0.25f * dot(n, n);
     const float along = dot(n, normal);
     if (onPlane && along * along > 0.82f * 0.82f * dot(n, n)) own |= bit;
     bit *= 2;

@@ -13,7 +13,21 @@ bool separates(const glm::dvec3& axis, const Corners& relative, double half) {
   return std::min({a, b, c}) > radius || std::max({a, b, c}) < -radius;
 }
 
-/// Keeps the side where sign·(p[axis] − plane) ≥ 0.
+}  // namespace
+
+bool overlapsCube(const Corners& triangle, const glm::dvec3& centre, double half) {
+  const Corners relative{triangle[0] - centre, triangle[1] - centre, triangle[2] - centre};
+  const glm::dvec3 edges[3] = {relative[1] - relative[0], relative[2] - relative[1], relative[0] - relative[2]};
+  for (int k = 0; k < 3; ++k) {
+    glm::dvec3 unit(0.0);
+    unit[k] = 1.0;
+    if (separates(unit, relative, half)) return false;
+    for (const glm::dvec3& edge : edges)
+      if (separates(glm::cross(unit, edge), relative, half)) return false;
+  }
+  return !separates(glm::cross(edges[0], edges[1]), relative, half);
+}
+
 std::vector<glm::dvec3> clipByPlane(const std::vector<glm::dvec3>& polygon, int axis, double plane, double sign) {
   std::vector<glm::dvec3> kept;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -28,21 +42,6 @@ std::vector<glm::dvec3> clipByPlane(const std::vector<glm::dvec3>& polygon, int 
     }
   }
   return kept;
-}
-
-}  // namespace
-
-bool overlapsCube(const Corners& triangle, const glm::dvec3& centre, double half) {
-  const Corners relative{triangle[0] - centre, triangle[1] - centre, triangle[2] - centre};
-  const glm::dvec3 edges[3] = {relative[1] - relative[0], relative[2] - relative[1], relative[0] - relative[2]};
-  for (int k = 0; k < 3; ++k) {
-    glm::dvec3 unit(0.0);
-    unit[k] = 1.0;
-    if (separates(unit, relative, half)) return false;
-    for (const glm::dvec3& edge : edges)
-      if (separates(glm::cross(unit, edge), relative, half)) return false;
-  }
-  return !separates(glm::cross(edges[0], edges[1]), relative, half);
 }
 
 std::vector<glm::dvec3> clipToVoxel(const Corners& triangle, const glm::dvec3& low) {

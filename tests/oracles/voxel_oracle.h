@@ -12,6 +12,9 @@ using Corners = std::array<glm::dvec3, 3>;
 /// Does the triangle overlap the closed cube of half edge `half` around `centre`? All 13 axes; touching counts.
 bool overlapsCube(const Corners& triangle, const glm::dvec3& centre, double half);
 
+/// Keeps the side of a convex polygon where sign·(p[axis] − plane) ≥ 0.
+std::vector<glm::dvec3> clipByPlane(const std::vector<glm::dvec3>& polygon, int axis, double plane, double sign);
+
 /// The part of the triangle inside the closed cube [low, low + 1]³; empty or at least 3 corners.
 std::vector<glm::dvec3> clipToVoxel(const Corners& triangle, const glm::dvec3& low);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -20,6 +21,7 @@ constexpr double kFixedUnit = 1.0 / 4294967296.0;  // areas below half of 2⁻³
 struct FaceSum {
   double area = 0;
   glm::dvec3 albedo{0.0}, normal{0.0}, position{0.0}, emission{0.0};
+  uint32_t across[2]{};  ///< slabs across the two axes that follow the face's
 };
 
 struct VoxelRange {
@@ -80,8 +82,30 @@ glm::dvec3 shadingNormal(const SoupTriangle& triangle, const Corners& corners, c
   return glm::dot(n, geometric) < 0.0 ? -n : n;
 }
 
-void addTriangle(const SoupTriangle& triangle, bool bothSides, const VoxelStructures& s, std::map<uint32_t, FaceSum>& sums,
-                 std::vector<double>& voxelArea) {
+/// Sixteenths of the voxel's extent along `axis` (less 0.001 on both sides) that the polygon (relative to its voxel) passes.
+uint32_t slabsAcross(const std::vector<glm::dvec3>& polygon, int axis) {
+  uint32_t slabs = 0;
+  for (int slab = 0; slab < 16; ++slab) {
+    std::vector<glm::dvec3> part = clipByPlane(polygon, axis, slab / 16.0 + 0.001, 1.0);
+    if (!part.empty()) part = clipByPlane(part, axis, (slab + 1) / 16.0 - 0.001, -1.0);
+    if (!part.empty()) slabs |= 1u << slab;
+  }
+  return slabs;
+}
+
+uint32_t marginsOf(uint32_t u, uint32_t v) {
+  if (u == 0 || v == 0) return 0;
+  const auto low = [](uint32_t slabs) { return static_cast<uint32_t>(std::countr_zero(slabs)); };
+  const auto high = [](uint32_t slabs) { return static_cast<uint32_t>(std::countl_zero(slabs << 16)); };
+  return low(u) | high(u) << 4 | low(v) << 8 | high(v) << 12;
+}
+
+/// By voxel and direction: what shows its front there (both sides of double-sided triangles), and what shows its back.
+struct FaceSums {
+  std::map<uint32_t, FaceSum> fronts, backs;
+};
+
+void addTriangle(const SoupTriangle& triangle, const VoxelStructures& s, FaceSums& sums, std::vector<double>& voxelArea) {
   const Corners corners = gridCorners(triangle, s.grid);
   const glm::dvec3 geometric = normalized(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
   forEachVoxel(rangeOf(corners, s.grid), [&](const glm::ivec3& voxel) {
@@ -93,19 +117,22 @@ void addTriangle(const SoupTriangle& triangle, bool bothSides, const VoxelStruct
     if (!(area > 0.0) || index == shared::kNone) return;
     voxelArea[index] += area;
     const glm::dvec3 centroid = centroidOf(polygon);
+    std::vector<glm::dvec3> relative = polygon;
+    for (glm::dvec3& p : relative) p -= low;
     const glm::dvec3 shading = shadingNormal(triangle, corners, centroid, geometric);
     for (uint32_t f = 0; f < shared::kFaceCount; ++f) {
       const double cosine = glm::dot(geometric, glm::dvec3(shared::faceVector(f)));
       const bool front = cosine > 0.0;
-      if (!front && !bothSides && !triangle.doubleSided) continue;
       const double weight = area * std::abs(cosine);
       if (weight < 0.5 * kFixedUnit) continue;
-      FaceSum& sum = sums[index << 3 | f];
+      FaceSum& sum = (front || triangle.doubleSided ? sums.fronts : sums.backs)[index << 3 | f];
       sum.area += weight;
       sum.albedo += weight * glm::dvec3(triangle.albedo);
       sum.normal += weight * (front ? shading : -shading);
       sum.position += weight * (centroid - low);
       if (front) sum.emission += weight * glm::dvec3(triangle.emission);
+      if (std::abs(cosine) < 0.25) continue;
+      for (uint32_t i = 0; i < 2; ++i) sum.across[i] |= slabsAcross(relative, static_cast<int>((f / 2 + 1 + i) % 3));
     }
   });
 }
@@ -250,19 +277,20 @@ VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool
                         : clustered_voxel::makeGrid(low, high, resolution);
   fillOccupancy(s, soup);
   indexVoxels(s);
-  std::map<uint32_t, FaceSum> sums;
+  FaceSums sums;
   s.voxelArea.assign(s.voxels.size(), 0.0);
-  for (const SoupTriangle& triangle : soup) addTriangle(triangle, bothSides, s, sums, s.voxelArea);
+  for (const SoupTriangle& triangle : soup) addTriangle(triangle, s, sums, s.voxelArea);
+  if (bothSides) sums.fronts.merge(sums.backs);  // backs only where there are no fronts
   s.mask.assign(s.voxels.size(), 0);
-  for (const auto& [key, sum] : sums) s.mask[key >> 3] |= 1u << (key & 7);
+  for (const auto& [key, sum] : sums.fronts) s.mask[key >> 3] |= 1u << (key & 7);
   numberFaces(s);
   for (shared::Face& face : s.faces) {
-    const FaceSum& sum = sums.at(face.key);
+    const FaceSum& sum = sums.fronts.at(face.key);
     face.area = static_cast<float>(sum.area);
     const glm::dvec3 n = sum.normal / sum.area;
     face.normal = shared::encodeNormal(glm::length(n) < 1e-4 ? shared::faceVector(face.key & 7) : glm::vec3(glm::normalize(n)));
     face.position = shared::encodePosition(glm::vec3(sum.position / sum.area));
-    face.albedo = shared::encodeAlbedo(glm::vec3(sum.albedo / sum.area));
+    face.albedo = shared::withMargins(shared::encodeAlbedo(glm::vec3(sum.albedo / sum.area)), marginsOf(sum.across[0], sum.across[1]));
     s.emission.push_back(glm::vec3(sum.emission / sum.area * std::numbers::pi));
   }
   return s;

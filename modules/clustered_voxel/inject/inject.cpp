@@ -56,7 +56,7 @@ void Inject::prepare(graph::PrepareContext& context) {
                                                             .pushConstantBytes = 12});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
-                    .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB}, .pushConstantBytes = 4});
+                    .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
   } else {
     points_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/points.comp",
                                                              .bindings = {kB, kB, kB, kI, kB, kB, kB, kB, kB, kB},
@@ -106,8 +106,9 @@ void Inject::record(graph::RecordContext& context) {
     commands.push(push);
     commands.dispatchItems(texels, kGroup);
     commands.barrier();
-    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), flux, viewTable, irradiance});
-    commands.push(faceCount);
+    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), flux, viewTable, irradiance, context.buffer("scene.lights"),
+                             context.buffer("voxels")});
+    commands.push(std::array{faceCount, push.lightCount});
     commands.dispatchItems(faceCount, kGroup);
   } else {
     commands.bind(points_, {context.buffer("scene.lights"), context.buffer("scene.shadow_views"), context.buffer("grid"),

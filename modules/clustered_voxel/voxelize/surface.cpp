@@ -47,6 +47,7 @@ void Surface::declare(graph::Declaration& d) {
   d.scratch("position_sums", Shape::buffer(24, faces), "Σ w x", sums);
   d.scratch("normal_sums", Shape::buffer(24, faces), "Σ w (n + 1)", sums);
   if (emissive_) d.scratch("emission_sums", Shape::buffer(24, faces), "Σ w L_e", sums);
+  d.scratch("footprints", Shape::buffer(4, faces), "where in the voxel", sums);
   d.scratch("emission_peak", Shape::buffer(4, 1), "bits of the largest radiance", sums);
   d.scratch("voxel_areas", Shape::buffer(8, voxels), "Σ area, h²", sums);
   if (normals_ == Normals::Heuristic) d.scratch("angle_sums", Shape::buffer(48, voxels), "Σ area · angle(n, e_f)", sums);
@@ -61,20 +62,21 @@ void Surface::prepare(graph::PrepareContext& context) {
   const uint32_t heuristic = normals_ == Normals::Heuristic ? 1 : 0;
   std::vector<gpu::SpecializationConstant> constants = materialConstants(context.traits());
   constants.push_back({3, heuristic});
-  pass_.prepare(device, method_, kType, "surface", 19, constants);
+  pass_.prepare(device, method_, kType, "surface", 20, constants);
   if (emissive_)
     emissionPeak_ = gpu::Pipeline(
         device,
         gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/emission_peak.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
   resolve_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/surface_resolve.comp",
-                                                            .bindings = std::vector<BindingType>(16, kB),
+                                                            .bindings = std::vector<BindingType>(17, kB),
                                                             .pushConstantBytes = 4,
                                                             .constants = {{0, emissive_ && wantsEmission_ ? 1u : 0u}, {1, heuristic}}});
 }
 
 void Surface::record(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
-  for (const char* name : {"area_sums", "albedo_sums", "position_sums", "normal_sums", "emission_peak", "voxel_areas", "check_words"})
+  for (const char* name :
+       {"area_sums", "albedo_sums", "position_sums", "normal_sums", "footprints", "emission_peak", "voxel_areas", "check_words"})
     commands.fill(context.buffer(name), 0);
   if (emissive_) commands.fill(context.buffer("emission_sums"), 0);
   if (normals_ == Normals::Heuristic) commands.fill(context.buffer("angle_sums"), 0);
@@ -99,7 +101,7 @@ void Surface::sumPieces(graph::RecordContext& context) {
     commands.dispatchItems(context.traits().materialCount, 64);
     commands.barrier();
   }
-  const std::array<gpu::BoundResource, 15> rest = {
+  const std::array<gpu::BoundResource, 16> rest = {
       context.buffer("scene.triangle_materials"),
       context.buffer("scene.materials"),
       context.buffer("scene.textures"),
@@ -114,7 +116,8 @@ void Surface::sumPieces(graph::RecordContext& context) {
       emissive_ ? context.buffer("emission_sums") : context.buffer("area_sums"),
       peak,
       context.buffer("voxel_areas"),
-      normals_ == Normals::Heuristic ? context.buffer("angle_sums") : context.buffer("area_sums")};
+      normals_ == Normals::Heuristic ? context.buffer("angle_sums") : context.buffer("area_sums"),
+      context.buffer("footprints")};
   pass_.record(context, grid, rest);
 }
 
@@ -128,7 +131,7 @@ void Surface::resolveFaces(graph::RecordContext& context) {
                  context.buffer("first"), area, context.buffer("albedo_sums"), context.buffer("position_sums"),
                  context.buffer("normal_sums"), emissive_ ? context.buffer("emission_sums") : area, context.buffer("emission_peak"),
                  context.buffer("voxel_areas"), normals_ == Normals::Heuristic ? context.buffer("angle_sums") : area, faces,
-                 wantsEmission_ ? context.buffer("emission") : faces, context.buffer("check_words")});
+                 wantsEmission_ ? context.buffer("emission") : faces, context.buffer("check_words"), context.buffer("footprints")});
   commands.push(voxelCount);
   commands.dispatchItems(voxelCount, 64);
 }

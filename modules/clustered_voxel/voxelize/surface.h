@@ -2,12 +2,17 @@
 //
 // reads   scene.vertices, .indices, .triangle_materials, .materials, .textures; voxelize grid, occupancy; index rank, voxels;
 //         faces mask, first
-// writes  faces     Face × F   a_s = Σ w in h², w = area · |n·e_f|; ρ_s, n_s, x_s: means weighted by w
+// writes  faces     Face × F   a_s = Σ w in h², w = area · |n·e_f|; ρ_s, n_s, x_s: means weighted by w; margins: how far from
+//                             the voxel's sides it ends, seen along e_f
 //         emission  vec3 × F   B_e = π Σ w L_e / a_s, W/m², of what faces outward on this side; 0: dark. Made only if read
 // runs    when the geometry, materials, the voxels or a parameter changes
-// cost    an outline integral and up to 62 atomic adds a (triangle, voxel) pair, more where sides=gltf; scratch 80 bytes a face (104 with
+// cost    an outline integral and up to 62 atomic adds a (triangle, voxel) pair, twice that for double-sided materials; scratch 84 bytes a face (108 with
 //         emitters) and 8 a voxel
 // source  METHODS section 1, Voxelize; normals=heuristic: clustered_voxel_2022 section 4.2
+//
+// A face is made of the surface that shows its front there. Where sides=both, a face that sees backs alone is made of those; backs that share a
+// face with fronts do not count: the two skins of a thin wall often share voxels, and what each shows inside the wall, where no light comes,
+// would halve the other's radiosity.
 //
 // Sums are 64-bit fixed point, so their order does not matter. n_s is the shading normal, turned to the geometric normal's side;
 // where the normals of a face cancel it is e_f. figure total_area: Σ area of triangle ∩ voxel, m², to hold against the mesh's.

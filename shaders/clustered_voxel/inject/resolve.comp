@@ -1,8 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Flux sums → irradiance: E_dir = Φ_f / (a_s h²).
+// Flux sums → irradiance: E_dir = Φ_f / (a_s h²). Scraps of surface, smaller than a few shadow texels, catch one by chance: they get no more
+// than the lights can give, since the rare ray that is sent to such a face would be a spark.
 #include "shared/dispatch.glsl"
+#include "shared/light.glsl"
+#include "shared/voxel_codec.h"
 #include "shared/voxel.h"
 
 layout(local_size_x = 64) in;
@@ -12,7 +15,26 @@ layout(set = 0, binding = 1, scalar) readonly buffer GridBuffer { Grid grid; };
 layout(set = 0, binding = 2, scalar) readonly buffer FluxBuffer { uint flux[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer TableBuffer { uint viewTable[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer IrradianceBuffer { vec3 irradiance[]; };
-layout(push_constant, scalar) uniform Push { uint faceCount; };
+layout(set = 0, binding = 5, scalar) readonly buffer LightBuffer { Light lights[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer VoxelBuffer { uint voxels[]; };
+layout(push_constant, scalar) uniform Push {
+  uint faceCount;
+  uint lightCount;
+};
+
+const float kScrap = 0.05;  // h²
+
+// Irradiance of a plane about the face that is turned to each light.
+vec3 mostIrradiance(Face face) {
+  vec3 x = grid.origin + (vec3(unpackVoxel(voxels[face.key >> 3])) + decodePosition(face.position)) * grid.h;
+  vec3 sum = vec3(0.0);
+  for (uint l = 0; l < lightCount; ++l) {
+    vec3 toLight = lights[l].type == kLightDirectional ? -lights[l].direction : lights[l].position - x;
+    float squared = dot(toLight, toLight);
+    if (squared > 0.0) sum += lightIrradiance(lights[l], x, toLight * inversesqrt(squared));
+  }
+  return sum;
+}
 
 void main() {
   uint s = radivoxItemIndex();
@@ -22,5 +44,7 @@ void main() {
   vec3 sum;
   for (uint c = 0; c < 3; ++c)
     sum[c] = ldexp(float(flux[6 * s + 2 * c + 1]), 32 - exponent) + ldexp(float(flux[6 * s + 2 * c]), -exponent);
-  irradiance[s] = sum / area;
+  sum /= area;
+  if (faces[s].area < kScrap) sum = min(sum, mostIrradiance(faces[s]));
+  irradiance[s] = sum;
 }

@@ -20,16 +20,6 @@ float dotPrecise(vec3 a, vec3 b) {
   return three;
 }
 
-// Whether the surface's mean says where it ends: not when it fills the voxel, nor when it is a mean of several.
-bool isBounded(Face face, uint normalCode) {
-  vec3 mean = decodePosition(face.position);
-  precise vec3 sides = 2.0 * min(mean, 1.0 - mean);
-  uint axis = planeAxis(planeNormal(normalCode));
-  precise float cover = axis == 0u ? sides.y * sides.z : (axis == 1u ? sides.x * sides.z : sides.x * sides.y);
-  precise float least = 0.98 * face.area;
-  return face.area <= kCoverFull && cover >= least;
-}
-
 void main() {
   uint voxel = radivoxItemIndex();
   if (voxel >= voxelCount) return;
@@ -61,8 +51,9 @@ void main() {
     left &= ~members;
     if (kCount) continue;
     uint code = planeNormalCode(largest.normal);
-    uvec2 plane = uvec2(code | members << 20 | mask << 26, largest.position);
-    plane.y |= (isBounded(largest, code) ? kPlaneBounded : 0u) | (left != 0u ? kPlaneMore : 0u);
+    uint offset = encodePlaneOffset(planeNormal(code), x);
+    uint axis = (largest.key & 7u) >> 1;
+    uvec2 plane = uvec2(code | members << 20 | mask << 26, offset | faceMargins(largest) << 13 | axis << 29 | (left != 0u ? kPlaneMore : 0u));
     planes[count == 0u ? voxel : voxelCount + planeExtras[voxel] + count - 1u] = plane;
   }
   if (kCount) planeExtras[voxel] = max(count, 1u) - 1u;

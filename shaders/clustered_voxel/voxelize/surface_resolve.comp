@@ -27,6 +27,7 @@ layout(set = 0, binding = 12, scalar) readonly buffer AngleSums { uvec2 angleSum
 layout(set = 0, binding = 13, scalar) writeonly buffer Faces { Face faces[]; };
 layout(set = 0, binding = 14, scalar) writeonly buffer Emission { vec3 emission[]; };
 layout(set = 0, binding = 15, scalar) buffer TotalArea { uint totalArea[2]; };
+layout(set = 0, binding = 16, scalar) readonly buffer Footprints { uint footprints[]; };
 layout(push_constant, scalar) uniform Push { uint voxelCount; };
 
 shared uint groupArea[2];
@@ -75,18 +76,26 @@ vec3 meanNormal(uint slot, uvec2 area, float scale, uint f, bool flipped) {
   return normal;
 }
 
+// faceMargins of a face's footprints: free slabs below the lowest and above the highest.
+uint marginsOf(uint footprint) {
+  uint u = footprint & 0xffffu, v = footprint >> 16;
+  if (u == 0u || v == 0u) return 0u;
+  return uint(findLSB(u)) | (15u - uint(findMSB(u))) << 4 | uint(findLSB(v)) << 8 | (15u - uint(findMSB(v))) << 12;
+}
+
 void writeFaces(uint voxel) {
   uint mask = faceMasks[voxel];
   uint face = firstFaces[voxel];
   vec3 axisNormal = kHeuristic && mask != 0u ? heuristicNormal(voxel) : vec3(0.0);
   for (uint f = 0u; f < kFaceCount; ++f) {
     if (((mask >> f) & 1u) == 0u) continue;
-    // Both sides reflect: −axis comes right after +axis and shares its sums, seen from the other side.
-    bool shares = grid.singleSided == 0u && (f & 1u) != 0u;
-    uint slot = shares ? face - 1u : face;
+    // A face is made of the surface whose front it shows. Only where there is none does it show backs, seen from the other side: those of a wall's two
+    // skins lie inside the wall, unlit and out of sight, and would darken the fronts that share their voxels.
+    bool shows = areaSums[face] != uvec2(0u);
+    uint slot = shows ? face : ((f & 1u) != 0u ? face - 1u : face + 1u);
     uvec2 area = areaSums[slot];
     precise float scale = preciseReciprocal(fixedToFloat(area));
-    vec3 normal = meanNormal(slot, area, scale, f, shares);
+    vec3 normal = meanNormal(slot, area, scale, f, !shows);
     if (kHeuristic) {
       precise float side = axisNormal.x * normal.x + axisNormal.y * normal.y + axisNormal.z * normal.z;
       normal = side < 0.0 ? -axisNormal : axisNormal;
@@ -95,7 +104,8 @@ void writeFaces(uint voxel) {
     faces[face].area = fixedToFloat(area);
     faces[face].normal = encodeNormal(normal);
     faces[face].position = encodePosition(meanOf(positionSums[3u * slot], positionSums[3u * slot + 1u], positionSums[3u * slot + 2u], scale));
-    faces[face].albedo = encodeAlbedo(meanOf(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u], scale));
+    uvec2 albedo = encodeAlbedo(meanOf(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u], scale));
+    faces[face].albedo = withMargins(albedo, marginsOf(footprints[slot]));
     if (kEmission) {
       vec3 mean = meanOf(emissionSums[3u * face], emissionSums[3u * face + 1u], emissionSums[3u * face + 2u], scale);
       precise vec3 radiosity = mean * emissionUpscale(emissionPeak) * 3.14159265;

@@ -8,7 +8,7 @@ layout(set = 0, binding = 7, scalar) readonly buffer Occupancy { uvec2 occupancy
 layout(set = 0, binding = 8, scalar) readonly buffer Rank { uint brickRank[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer FaceMasks { uint faceMasks[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer FirstFaces { uint firstFaces[]; };
-// One buffer a quantity: each is as large as a binding can be. Where both sides reflect, −axis shares the sums of +axis, and only +axis's are kept.
+// One buffer a quantity: each is as large as a binding can be.
 layout(set = 0, binding = 11, scalar) buffer AreaSums { uint areaSums[]; };          // 2 words a face: Σ w
 layout(set = 0, binding = 12, scalar) buffer AlbedoSums { uint albedoSums[]; };      // 6: Σ w ρ
 layout(set = 0, binding = 13, scalar) buffer PositionSums { uint positionSums[]; };  // 6: Σ w x
@@ -17,8 +17,10 @@ layout(set = 0, binding = 15, scalar) buffer EmissionSums { uint emissionSums[];
 layout(set = 0, binding = 16, scalar) readonly buffer EmissionPeak { uint emissionPeak; };
 layout(set = 0, binding = 17, scalar) buffer VoxelAreas { uint voxelAreas[]; };      // 2 words a voxel: Σ area
 layout(set = 0, binding = 18, scalar) buffer AngleSums { uint angleSums[]; };        // 12 words a voxel: Σ area · angle(n, e_f)
+layout(set = 0, binding = 19, scalar) buffer Footprints { uint footprints[]; };      // a word a face: footprintOf
 
 #include "clustered_voxel/voxelize/emission_scale.glsl"
+#include "clustered_voxel/voxelize/footprint.glsl"
 
 vec3 shadingNormal(Triangle t, ivec3 turned, Piece piece, vec3 geometric) {
   vec2 weights = clampToTriangle(barycentricOf(t, turned, piece.middle.xy));
@@ -82,21 +84,21 @@ void visitVoxel(Triangle t, ivec3 turned) {
       radivoxFixedAtomicAdd(angleSums[word], angleSums[word + 1u], toFixed(weighted))
     }
   }
-  bool back = reflectsOnBack(material);
-  bool bothSides = grid.singleSided == 0u;
-  // One loop, so that the additions are compiled once: k = s / 2; even s add to the front, or where both sides reflect to +axis for both.
+  // A one-sided surface adds to its front alone, even where backs reflect too: see surface_resolve.comp.
+  bool doubleSided = (materials[material].flags & kMaterialDoubleSided) != 0u;
+  // One loop, so that the additions are compiled once: k = s / 2; even s add to the front.
   for (uint s = 0u; s < 6u; ++s) {
     uint k = s >> 1;
     bool isBack = (s & 1u) != 0u;
     float weight = weightOf(piece, surface, k);
-    if (toFixed(weight) == uvec2(0u) || (isBack && (bothSides || !back))) continue;
-    bool negative = piece.normal[k] < 0.0;
-    uint plus = 2u * worldAxis(t, k);
-    uint front = plus + (negative ? 1u : 0u);
+    if (toFixed(weight) == uvec2(0u) || (isBack && !doubleSided)) continue;
+    uint front = 2u * worldAxis(t, k) + (piece.normal[k] < 0.0 ? 1u : 0u);
     uint frontFace = first + uint(bitCount(mask & ((1u << front) - 1u)));
-    uint f = bothSides ? plus : (isBack ? front ^ 1u : front);
-    bool flips = bothSides ? negative : isBack;
-    addToFace(first + uint(bitCount(mask & ((1u << f) - 1u))), weight, surface.albedo, position, flips ? -normal : normal);
+    uint f = isBack ? front ^ 1u : front;
+    uint face = first + uint(bitCount(mask & ((1u << f) - 1u)));
+    uint footprint = footprintOf(t, turned, piece, k);
+    if ((footprints[face] & footprint) != footprint) atomicOr(footprints[face], footprint);
+    addToFace(face, weight, surface.albedo, position, isBack ? -normal : normal);
     if (!kEmissive || isBack || !any(greaterThan(surface.emission, vec3(0.0)))) continue;
     for (uint c = 0u; c < 3u; ++c) {
       uint word = 6u * frontFace + 2u * c;
