@@ -25,6 +25,18 @@ struct Case {
   std::vector<uint32_t> labels;
   uint32_t clusterCount = 0;
   oracle::VisibilityRows rows;
+  std::vector<uint32_t> weights;  ///< empty: by area
+
+  /// Faces whose area is what they count for.
+  std::vector<shared::Face> weighted() const {
+    std::vector<shared::Face> result = faces;
+    std::vector<uint64_t> sums(clusterCount);
+    for (size_t s = 0; s < weights.size(); ++s) sums[labels[s]] += weights[s];
+    for (size_t s = 0; s < weights.size(); ++s) {
+      if (sums[labels[s]] > 0) result[s].area = static_cast<float>(weights[s]);
+    }
+    return result;
+  }
 };
 
 Case makeCase(uint32_t faceCount, uint32_t clusterCount, uint32_t entriesPerRow, uint32_t seed, bool closed = false) {
@@ -87,6 +99,10 @@ class TransferTest : public oracles::GpuTest {
     h.connect("in.entries", "transfer.visibility_entries");
     for (const char* port : {"chunk_table", "faces", "labels", "clusters", "members"})
       h.connect(std::string("in.") + port, std::string("transfer.") + port);
+    if (!c.weights.empty()) {
+      h.importBuffer("in.weights", c.weights);
+      h.connect("in.weights", "transfer.weights");
+    }
     for (const char* port : {"row_start", "entries", "sky"}) h.output(std::string("transfer.") + port);
     h.run();
     Output out;
@@ -100,7 +116,7 @@ class TransferTest : public oracles::GpuTest {
 
   void check(const Case& c) {
     const Output out = transfer(c);
-    const oracle::SparseMatrix expected = oracle::clusterTransfer(c.rows, c.faces, c.labels, c.clusterCount);
+    const oracle::SparseMatrix expected = oracle::clusterTransfer(c.rows, c.weighted(), c.labels, c.clusterCount);
     double worst = 0, worstSum = 0;
     for (uint32_t i = 0; i < c.clusterCount; ++i) {
       ASSERT_EQ(out.rowStart[i + 1] - out.rowStart[i], expected.rows[i].size()) << "row " << i;
@@ -129,6 +145,14 @@ TEST_F(TransferTest, EveryFaceACluster) { check(makeCase(300, 300, 30, 3)); }
 TEST_F(TransferTest, SeveralChunks) { check(makeCase(2 * shared::kRowsPerChunk + 100, 700, 8, 4)); }
 // 65536 columns are one window; that many rows take a while.
 TEST_F(TransferTest, SlowMoreColumnsThanAWindow) { check(makeCase(70000, 66000, 4, 5)); }
+
+TEST_F(TransferTest, FacesCountByTheirWeights) {
+  Case c = makeCase(3000, 150, 40, 8);
+  Random random{std::mt19937(9)};
+  for (size_t s = 0; s < c.faces.size(); ++s)
+    c.weights.push_back(c.labels[s] % 10 == 0 || random() % 4 == 0 ? 0 : random() >> random() % 32);
+  check(c);
+}
 
 TEST_F(TransferTest, ClosedRowsSumToOne) {
   const Case c = makeCase(2000, 120, 40, 6, true);

@@ -62,7 +62,8 @@ VisibilityRun::VisibilityRun(gpu::Device& device, const VoxelStructures& s, cons
   harness.set("visibility.hit", settings.voxelHit ? "voxel" : "plane");
   harness.set("visibility.near", std::to_string(settings.near));
   harness.set("visibility.skip", skip);
-  for (const char* port : {"row_start", "entries", "chunk_table", "clearance"}) harness.output(std::string("visibility.") + port);
+  for (const char* port : {"row_start", "entries", "chunk_table", "clearance", "weights"})
+    harness.output(std::string("visibility.") + port);
 }
 
 std::vector<Row> VisibilityRun::rows() {
@@ -125,6 +126,7 @@ std::vector<Row> checkRows(gpu::Device& device, const VoxelStructures& s, const 
   const std::vector<Row> rows = run.rows();
   expectSameRows(rows, visibilityRows(s, settings, run.labels, run.clusterCount));
   expectWholeRows(rows, settings.rays);
+  EXPECT_EQ(run.harness.download<uint32_t>("visibility.weights", s.faces.size()), seenWeights(s, settings));
   return rows;
 }
 

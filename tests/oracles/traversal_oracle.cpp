@@ -314,6 +314,18 @@ std::vector<std::map<uint32_t, uint32_t>> visibilityRows(const VoxelStructures& 
   return rows;
 }
 
+std::vector<uint32_t> seenWeights(const VoxelStructures& s, const VisibilitySettings& settings) {
+  const std::vector<uint32_t> directions = clustered_voxel::makeDirections(settings.rays);
+  std::vector<uint32_t> weights(s.faces.size());
+  for (uint32_t face = 0; face < s.faces.size(); ++face) {
+    for (uint32_t ray = 0; ray < settings.rays; ++ray) {
+      const RayResult r = traceFaceRay(s, settings, directions, face, ray);
+      if (r.face < s.faces.size() && r.distance > 2.f) weights[r.face] += static_cast<uint32_t>(s.faces[face].area * 64.f + 0.5f);
+    }
+  }
+  return weights;
+}
+
 int castTriangles(const Soup& soup, const glm::dvec3& origin, const glm::dvec3& direction, double* distance) {
   int best = -1;
   double nearest = std::numeric_limits<double>::infinity();

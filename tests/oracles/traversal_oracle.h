@@ -48,6 +48,9 @@ RayResult traceFaceRay(const VoxelStructures& structures, const VisibilitySettin
 std::vector<std::map<uint32_t, uint32_t>> visibilityRows(const VoxelStructures& structures, const VisibilitySettings& settings,
                                                          const std::vector<uint32_t>& labels, uint32_t clusterCount);
 
+/// Σ round(64 a_r) over the rays of all faces r that hit each face from beyond 2 voxels.
+std::vector<uint32_t> seenWeights(const VoxelStructures& structures, const VisibilitySettings& settings);
+
 /// First triangle along the ray within (0, ∞), by trying them all; −1: none. Double precision.
 int castTriangles(const Soup& soup, const glm::dvec3& origin, const glm::dvec3& direction, double* distance = nullptr);
 

@@ -65,6 +65,34 @@ TEST_F(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
   EXPECT_LT(second, 0.5 * first);
 }
 
+TEST_F(Render, ClustersSendBackTheWeightedMeanOfTheirFaces) {
+  PipelineOptions options = small(20);
+  options.outputs = {"composite.color", "inject.cluster_radiosity", "inject.face_irradiance", "visibility.weights", "surface.faces",
+                     "cluster.labels"};
+  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), options);
+  p.run();
+  const size_t faceCount = p.count("faces"), clusterCount = p.count("clusters");
+  const auto faces = p.buffer<shared::Face>("surface.faces", faceCount);
+  const auto weights = p.buffer<uint32_t>("visibility.weights", faceCount), labels = p.buffer<uint32_t>("cluster.labels", faceCount);
+  const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance", faceCount);
+  const auto radiosity = p.buffer<glm::vec3>("inject.cluster_radiosity", clusterCount);
+  std::vector<double> seen(clusterCount), total(clusterCount), sum(clusterCount);
+  for (size_t s = 0; s < faceCount; ++s) seen[labels[s]] += weights[s];
+  for (size_t s = 0; s < faceCount; ++s) {
+    const double w = seen[labels[s]] > 0 ? weights[s] : static_cast<double>(faces[s].area);
+    total[labels[s]] += w;
+    sum[labels[s]] += w * static_cast<double>(shared::decodeAlbedo(faces[s].albedo).y * irradiance[s].y);
+  }
+  size_t lit = 0, unseen = 0;
+  for (size_t c = 0; c < clusterCount; ++c) {
+    EXPECT_NEAR(radiosity[c].y, sum[c] / total[c], 1e-5 * (1.0 + sum[c] / total[c])) << c;
+    lit += sum[c] > 0 ? 1 : 0;
+    unseen += seen[c] == 0 ? 1 : 0;
+  }
+  EXPECT_GT(lit, 20u);
+  EXPECT_GT(unseen, 0u) << "the outer sides of the box";
+}
+
 TEST_F(Render, LightMoveTracesNothingAgain) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
   Pipeline p(oracles::sharedDevice(), s, small(20));

@@ -55,7 +55,7 @@ TEST_F(Truth, SlowCornellBoxes) {
         EXPECT_NEAR(q.indirect.bias, previous, 0.03) << n;
       }
       previous = q.indirect.bias;
-      EXPECT_GT(q.full.psnr, 28.0);
+      EXPECT_GT(q.full.psnr, 37.5);
     }
     const Quality first = measure(std::string(name) + ".glb", one, at(64, 1));
     EXPECT_NEAR(first.indirect.bias, 1.0, 0.06);
@@ -66,12 +66,11 @@ TEST_F(Truth, SlowSponza) {
   if (oracles::sharedFolder().empty()) GTEST_SKIP() << "no ../shared";
   const oracles::Truth eight = oracles::loadTruth("sponza_b8", 256.0 / 768.0);
   const Quality q = measure("sponza.glb", eight, at(128, scene::kAllBounces));
-  EXPECT_GT(q.full.psnr, 28.5);
-  EXPECT_GT(q.direct.psnr, 34.0);
-  EXPECT_GT(q.indirect.psnr, 22.0);
-  // Known to be a fifth too dark (Cornell boxes: 2 % at most): voxels that hold both skins of a ledge or a thin wall share their light between
-  // them, and what is near sunlit edges is lost when irradiance is interpolated over voxels. The bound keeps it from getting worse.
-  EXPECT_GT(q.indirect.bias, 0.77);
+  EXPECT_GT(q.full.psnr, 33.5);
+  EXPECT_GT(q.direct.psnr, 34.5);
+  EXPECT_GT(q.indirect.psnr, 27.0);
+  // Some light is still lost where surfaces pass through each other, and near sunlit edges, when irradiance is interpolated over voxels.
+  EXPECT_GT(q.indirect.bias, 0.94);
   EXPECT_LT(q.indirect.bias, 1.05);
 }
 

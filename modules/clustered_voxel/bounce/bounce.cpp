@@ -21,10 +21,12 @@ constexpr uint32_t kGroup = 64;
 constexpr uint32_t kRowsPerGroup = 8;
 constexpr VkDeviceSize kStatusBytes = 16;
 
-gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount) {
+gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount,
+                           std::vector<gpu::SpecializationConstant> constants = {}) {
   return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
                                                         .bindings = std::vector(bindingCount, gpu::BindingType::StorageBuffer),
-                                                        .pushConstantBytes = sizeof(BouncePush)});
+                                                        .pushConstantBytes = sizeof(BouncePush),
+                                                        .constants = std::move(constants)});
 }
 
 }  // namespace
@@ -59,6 +61,10 @@ void Bounce::declare(graph::Declaration& d) {
   graph::Port& emission = d.read("emission", "mean B_e of each face, W/m²");
   emission.optional = emission.unwanted = !d.traits.emittersByRays;
   emission.unwantedReason = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
+  graph::Port& weights = d.read("weights", "how much of each face others see");
+  weights.optional = true;
+  weights.unwanted = emission.unwanted;
+  weights.unwantedReason = emission.unwantedReason;
   d.read("face_irradiance", "E_dir of each face, W/m²");
   d.read("direct_radiosity", "reflected direct light of each cluster, W/m²");
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");
@@ -82,7 +88,7 @@ void Bounce::declare(graph::Declaration& d) {
 void Bounce::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   if (context.has("emission")) {
-    meanEmission_ = makePipeline(device, "clustered_voxel/bounce/mean_emission.comp", 5);
+    meanEmission_ = makePipeline(device, "clustered_voxel/bounce/mean_emission.comp", 6, {{0, context.has("weights") ? 1u : 0u}});
     receiveEmission_ = makePipeline(device, "clustered_voxel/bounce/receive_emission.comp", 3);
   }
   if (context.has("entries")) {
@@ -161,8 +167,8 @@ void Bounce::record(graph::RecordContext& context) {
 void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& push) const {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& mean = context.buffer("mean_emission");
-  commands.bind(meanEmission_,
-                {context.buffer("clusters"), context.buffer("members"), context.buffer("faces"), context.buffer("emission"), mean});
+  commands.bind(meanEmission_, {context.buffer("clusters"), context.buffer("members"), context.buffer("faces"), context.buffer("emission"),
+                                mean, context.buffer(context.has("weights") ? "weights" : "members")});
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
   commands.barrier();

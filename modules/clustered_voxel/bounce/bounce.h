@@ -1,6 +1,7 @@
 // clustered_voxel.bounce — light that surfaces pass on among themselves.
 //
 // reads   row_start, entries, sky of transfer (not needed for one bounce without emitters by rays); clusters, members, labels, faces;
+//         weights? of visibility, for means of emission (absent: areas);
 //         face_irradiance and direct_radiosity of inject; emission where emitters light through rays (Traits::emittersByRays)
 // writes  cluster_radiosity  vec3 × C  reflected B, W/m², without emission; 0: black or unlit
 //         face_radiosity     vec3 × F  likewise: ρ_s (E_dir,s + E_emit,c + E_ind,c), direct light at the detail of faces

@@ -33,6 +33,7 @@ void Inject::declare(graph::Declaration& d) {
   d.read("faces", "Face");
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
+  d.read("weights", "how much of each face others see").optional = true;
   d.write("face_irradiance", Shape::buffer(12, Extent::of("faces")), "E_dir of each face, W/m²; 0: unlit");
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected direct light, W/m²");
   d.readBack("status", Shape::buffer(4, 4), "texels without a face; lit texels, low and high word; 0");
@@ -62,9 +63,10 @@ void Inject::prepare(graph::PrepareContext& context) {
                                                              .bindings = {kB, kB, kB, kI, kB, kB, kB, kB, kB, kB},
                                                              .pushConstantBytes = 8});
   }
-  clusters_ = gpu::Pipeline(
-      device,
-      gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/clusters.comp", .bindings = {kB, kB, kB, kB, kB}, .pushConstantBytes = 4});
+  clusters_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/clusters.comp",
+                                                             .bindings = {kB, kB, kB, kB, kB, kB},
+                                                             .pushConstantBytes = 4,
+                                                             .constants = {{0, context.has("weights") ? 1u : 0u}}});
 }
 
 void Inject::record(graph::RecordContext& context) {
@@ -121,7 +123,8 @@ void Inject::record(graph::RecordContext& context) {
     commands.dispatchItems(faceCount, kGroup);
   }
   commands.barrier();
-  commands.bind(clusters_, {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), irradiance, radiosity});
+  commands.bind(clusters_, {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), irradiance, radiosity,
+                            context.buffer(context.has("weights") ? "weights" : "members")});
   commands.push(clusterCount);
   commands.dispatchItems(clusterCount, kGroup);
 }

@@ -1,9 +1,10 @@
 // clustered_voxel.inject — direct light arrives at voxel faces.
 //
 // reads   scene.lights, scene.shadow_views, scene.info, scene.vertices, scene.indices; shadow.depth, shadow.triangle (absent when no light
-//         casts from a point: then everything is 0); grid, occupancy, rank, mask, first, faces; labels, clusters, members
+//         casts from a point: then everything is 0); grid, occupancy, rank, mask, first, faces; labels, clusters, members;
+//         weights? of visibility (absent: areas)
 // writes  face_irradiance   vec3 × F   E_dir, W/m²; 0: unlit
-//         cluster_radiosity vec3 × C   Σ a ρ E_dir / Σ a, W/m²: the light that clusters send back at once
+//         cluster_radiosity vec3 × C   Σ w ρ E_dir / Σ w, W/m²: the light that clusters send back at once
 //         status            u32 × 4    texels that found no face (their flux is lost), low and high word of all lit texels, 0
 // runs    when lights, shadow maps, faces or clusters change
 // cost    splat: one lane a shadow texel, 3 to 9 additions each; points: 18 shadow look-ups a face and light

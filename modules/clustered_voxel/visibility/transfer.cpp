@@ -27,6 +27,7 @@ void Transfer::declare(graph::Declaration& d) {
   d.read("labels", "cluster id of each face");
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
+  d.read("weights", "how much of each face others see").optional = true;
   d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
   d.write("entries", Shape::buffer(8, Extent::of("transfer_entries")), "column, form factor as float bits; columns ascend").growable = true;
   d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene");
@@ -45,8 +46,9 @@ void Transfer::prepare(graph::PrepareContext& context) {
                                                           .bindings = {kB, kB, kB, kB, kB, kB},
                                                           .pushConstantBytes = sizeof(Push)});
   fill_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
-                                                         .bindings = {kB, kB, kB, kB, kB, kB, kB, kB},
-                                                         .pushConstantBytes = sizeof(Push)});
+                                                         .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                         .pushConstantBytes = sizeof(Push),
+                                                         .constants = {{0, context.has("weights") ? 1u : 0u}}});
 }
 
 void Transfer::record(graph::RecordContext& context) {
@@ -65,8 +67,8 @@ void Transfer::record(graph::RecordContext& context) {
     scan_->scan(commands, rowStart, rowStart, clusterCount + 1, b("scan"), &b("total"));
   } else if (clusterCount > 0) {
     push.matrix = context.grown("entries").front()->address();
-    commands.bind(fill_,
-                  {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart, b("faces"), b("sky")});
+    commands.bind(fill_, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart, b("faces"),
+                          b("sky"), b(context.has("weights") ? "weights" : "labels")});
     commands.push(push);
     commands.dispatchItems(clusterCount, 1);
   }

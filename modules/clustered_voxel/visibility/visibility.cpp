@@ -42,6 +42,9 @@ Visibility::Visibility()
            params::choice("skip", &skip_, {"clearance", "bricks", "none"},
                           "how rays pass empty space (same result): a byte a voxel, a byte a brick, or voxel by voxel",
                           params::Invalidates::Plan),
+           params::choice("weights", &weights_, {"seen", "area"},
+                          "what a face counts for in its cluster's means: how much of it other faces see, or its area",
+                          params::Invalidates::Plan),
            params::number("near", &near_, {0.0, 4096.0}, "hits up to this distance keep their face instead of its cluster, voxels",
                           params::Invalidates::Rerun)}) {}
 
@@ -65,6 +68,7 @@ void Visibility::declare(graph::Declaration& d) {
   // Planes are as many as faces at most, and a voxel without faces has the place of one.
   d.write("planes", Shape::buffer(8, faces + 1), "what rays are stopped by: shared/voxel_plane.h");
   d.write("plane_extras", Shape::buffer(4, Extent::of("voxels")), "where the planes of a voxel after its first are");
+  d.write("weights", Shape::buffer(4, faces), "how much of each face others see");
   d.publishCount("entries", "", 0);
   d.hostPaced();
   const uint64_t rows = kRowsPerChunk;
@@ -93,7 +97,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
   planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
   sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 2, 8, {});
-  merge_ = make("clustered_voxel/visibility/merge.comp", 4, 16, {});
+  merge_ = make("clustered_voxel/visibility/merge.comp", 6, 20, {{0, weights_ == Weights::Seen ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
   if (traversal_ == Traversal::Bresenham) {
@@ -136,6 +140,7 @@ void Visibility::record(graph::RecordContext& context) {
   if (step == 0) {
     context.commands().fill(context.buffer("row_start"), 0);
     context.commands().fill(context.buffer("chunk_table"), 0);
+    context.commands().fill(context.buffer("weights"), 0);
     return;
   }
   context.commands().barrier();
@@ -257,9 +262,9 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);
   commands.barrier();
   struct {
-    uint32_t rowCount, rayCount, tableBits, clusterCount;
-  } mergePush{rows, rays_, tableBits(rays_), static_cast<uint32_t>(context.count("clusters"))};
-  commands.bind(merge_, {hits, context.buffer("labels"), table, offsets});
+    uint32_t rowCount, rayCount, tableBits, clusterCount, firstFace;
+  } mergePush{rows, rays_, tableBits(rays_), static_cast<uint32_t>(context.count("clusters")), firstFace};
+  commands.bind(merge_, {hits, context.buffer("labels"), table, offsets, context.buffer("faces"), context.buffer("weights")});
   commands.push(mergePush);
   commands.dispatchItems(kRowsPerChunk + 1, 64);
   commands.barrier();

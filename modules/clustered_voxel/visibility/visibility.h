@@ -6,6 +6,7 @@
 //         chunk_table uvec2 × chunks                  device address of each chunk
 //         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
 //         planes uvec2 × F, plane_extras u32 × V      what rays are stopped by (shared/voxel_plane.h)
+//         weights u32 × F                             Σ a over the rays that hit the face from beyond 2 h, in 1/64 h²; 0: nobody sees it
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
 // cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
@@ -16,6 +17,9 @@
 // lifted by 0.05 h; which face stops a ray is told, with what was measured, in shaders/shared/voxel_cast.glsl. A hit nearer than
 // `near` keeps its face's id, a farther one becomes its cluster's. Misses count by direction bin, backs of one-sided surfaces as
 // kAbsorbed, so that rows always sum to M.
+//
+// Weights serve means over clusters (transfer, inject, bounce): in a closed scene a_r F_rs = a_s F_sr makes them M a_s, but of a face that others
+// cover in part only what is seen of it counts, and a mean over areas would dim the cluster by what lies buried.
 //
 // Tracing, merging and filling are passes of their own, and rows are traced sorted by direction (sort_rows.comp): that,
 // and the clearance bytes, are what makes it fast. Rows do not depend on either.
@@ -37,6 +41,7 @@ class Visibility : public graph::Node {
   enum class Frame : uint32_t { Normal, Axis };
   enum class Hit : uint32_t { Plane, Voxel };
   enum class Skip : uint32_t { Clearance, Bricks, None };
+  enum class Weights : uint32_t { Seen, Area };
   Visibility();
   std::string_view type() const override { return kType; }
   params::Table& params() override { return table_; }
@@ -58,6 +63,7 @@ class Visibility : public graph::Node {
 
   uint32_t rays_ = 128;
   Traversal traversal_ = Traversal::Dda;
+  Weights weights_ = Weights::Seen;
   Frame frame_ = Frame::Normal;
   Hit hit_ = Hit::Plane;
   Skip skip_ = Skip::Clearance;

@@ -9,17 +9,26 @@ layout(set = 0, binding = 0, scalar) readonly buffer Hits { uint hits[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer Labels { uint labels[]; };
 layout(set = 0, binding = 2, scalar) buffer Table { uint table[]; };             // 2^tableBits a row, all empty
 layout(set = 0, binding = 3, scalar) writeonly buffer Counts { uint counts[]; };  // distinct ids a row; kRowsPerChunk + 1 words, 0 past the rows
+layout(set = 0, binding = 4, scalar) readonly buffer Faces { Face faces[]; };
+layout(set = 0, binding = 5, scalar) buffer Weights { uint weights[]; };
 layout(push_constant, scalar) uniform Push {
   uint rowCount;
   uint rayCount;
   uint tableBits;
   uint clusterCount;
+  uint firstFace;
 };
+layout(constant_id = 0) const bool kCountSeen = true;  // weights=seen
+
+// Integers, so that the order of rows does not matter. At the end of its range a weight stays, short of what several thousand lanes could add at once.
+void addWeight(uint face, uint unit) {
+  if (weights[face] < kMostWeight) atomicAdd(weights[face], unit);
+}
 #include "shared/dispatch.glsl"
 
 uint idOf(uint hit) {
-  if ((hit & kNearHit) != 0u) return clusterCount + (hit & ~kNearHit);
-  return hit >= kMissHit ? kMissBase + (hit - kMissHit) : labels[hit];
+  if ((hit & kNearHit) != 0u) return clusterCount + (hit & kHitFace);
+  return hit >= kMissHit ? kMissBase + (hit - kMissHit) : labels[hit & kHitFace];
 }
 
 void main() {
@@ -32,8 +41,13 @@ void main() {
   uint base = row << tableBits;
   uint mask = (1u << tableBits) - 1u;
   uint distinct = 0u;
+  uint unit = uint(faces[firstFace + row].area * kAreaUnits + 0.5);
+  if (!kCountSeen) weights[firstFace + row] = unit;
   for (uint ray = 0u; ray < rayCount; ++ray) {
-    uint id = idOf(hits[row * rayCount + ray]);
+    uint hit = hits[row * rayCount + ray];
+    uint id = idOf(hit);
+    // Close hits have the bit set, and so have misses.
+    if (kCountSeen && (hit & kCloseHit) == 0u && unit > 0u) addWeight(hit & kHitFace, unit);
     uint slot = (id * 2654435769u) >> (32u - tableBits);
     uint entry = table[base + slot];
     while (entry != kEmptySlot && (entry & kEntryIdMask) != id) {

@@ -95,7 +95,7 @@ void main() {
     bool outside = isOutside(cursor.voxel);
     uint hit = castFace(way, cursor, busy, atStart ? excluded : 0u, inFront, rayRandom(s, at));
     fresh = !busy || outside || hit != kHitNothing;
-    uint result = cursor.time <= nearDistance ? hit | kNearHit : hit;
+    uint result = hit | (cursor.time <= nearDistance ? kNearHit : 0u) | (cursor.time <= kCloseDistance ? kCloseHit : 0u);
     result = hit == kHitBack ? kMissHit + 6u : result;
     result = outside ? kMissHit + directionBin(way.direction) : result;
     // Written in every pass: overwritten until the ray is done, and again as it was once all are.

@@ -77,7 +77,7 @@ void main() {
       error -= moves * 2 * reach;
     }
     precise float distance = float(i) * pace;
-    uint result = distance <= nearDistance ? hit | kNearHit : hit;
+    uint result = hit | (distance <= nearDistance ? kNearHit : 0u) | (distance <= kCloseDistance ? kCloseHit : 0u);
     if (hit == kHitBack) result = kMissHit + 6u;
     if (hit == kHitNothing) result = kMissHit + directionBin(way.direction);
     hits[row * rayCount + ray] = result;

@@ -1,14 +1,17 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Rows of the cluster matrix: F_cc' = Σ_s a_s m_sc' / Σ_s a_s M_s, and the misses. Areas become integers relative to the cluster's
-// largest face (31 bits), so the sums are exact and the same for any order, and every row with its misses sums to one but for the last
+// Rows of the cluster matrix: F_cc' = Σ_s w_s m_sc' / Σ_s w_s M_s, and the misses. Weights become integers relative to the cluster's
+// largest (31 bits), so the sums are exact and the same for any order, and every row with its misses sums to one but for the last
 // rounding of each entry. Until a row is done its entries hold the two words of their sums.
 #include "clustered_voxel/visibility/transfer_columns.glsl"
 #include "shared/fixed_point.glsl"
 layout(set = 0, binding = 5, scalar) readonly buffer Starts { uint starts[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer FaceAreas { Face faces[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer Sky { float sky[]; };
+layout(constant_id = 0) const bool kWeighted = false;
+#define RADIVOX_BIND_WEIGHTS 8
+#include "clustered_voxel/weights.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer MatrixEntry { uvec2 value; };
 // Entries are found from the row's address: their number times eight does not fit 32 bits in large scenes.
@@ -22,7 +25,7 @@ MatrixEntry entryAt(uint index) {
 
 shared uint columnsBefore[kWords];
 shared uint laneSums[kLanes];
-shared uint greatestArea;
+shared uint greatestWeight;
 shared uint totalLow, totalHigh, skyLow, skyHigh;
 
 uvec2 timesCount(uint unit, uint count) {
@@ -31,7 +34,20 @@ uvec2 timesCount(uint unit, uint count) {
   return uvec2(low, high);
 }
 
-uint areaUnits(float area, float greatest) { return uint(area / greatest * 2147483648.0); }
+uint weightUnits(float weight, float greatest) { return uint(weight / greatest * 2147483648.0); }
+
+// The cluster's largest weight; all lanes.
+float greatestOf(Cluster cluster, bool byArea) {
+  uint lane = gl_LocalInvocationID.x;
+  if (lane == 0u) greatestWeight = 0u;
+  barrier();
+  uint greatest = 0u;
+  for (uint i = lane; i < cluster.faceCount; i += kLanes)
+    greatest = max(greatest, floatBitsToUint(weightOf(members[cluster.firstMember + i], byArea)));
+  if (greatest > 0u) atomicMax(greatestWeight, greatest);  // weights are positive: their bits are ordered as they are
+  barrier();
+  return uintBitsToFloat(greatestWeight);
+}
 
 void main() {
   uint c = radivoxGroupIndex();
@@ -39,16 +55,16 @@ void main() {
   uint lane = gl_LocalInvocationID.x;
   Cluster cluster = clusters[c];
   if (lane == 0u) {
-    greatestArea = 0u;
     totalLow = totalHigh = skyLow = skyHigh = 0u;
   }
   barrier();
-  uint greatestOfLane = 0u;
-  for (uint i = lane; i < cluster.faceCount; i += kLanes)
-    greatestOfLane = max(greatestOfLane, floatBitsToUint(faces[members[cluster.firstMember + i]].area));
-  if (greatestOfLane > 0u) atomicMax(greatestArea, greatestOfLane);  // areas are positive: their bits are ordered as they are
-  barrier();
-  float greatest = uintBitsToFloat(greatestArea);
+  bool byArea = !kWeighted;
+  float greatest = greatestOf(cluster, byArea);
+  if (greatest == 0.0) {
+    byArea = true;
+    barrier();
+    greatest = greatestOf(cluster, byArea);
+  }
 
   uvec2 total = uvec2(0u);
   uvec2 missed = uvec2(0u);
@@ -80,7 +96,7 @@ void main() {
 
     for (uint i = lane; i < cluster.faceCount; i += kLanes) {
       uint s = members[cluster.firstMember + i];
-      uint unit = areaUnits(faces[s].area, greatest);
+      uint unit = weightUnits(weightOf(s, byArea), greatest);
       uint slot = rowSlot(s);
       uint rowEnd = rowStart[slot + 1u];
       Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);

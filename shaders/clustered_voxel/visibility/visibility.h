@@ -9,8 +9,15 @@ RADIVOX_CONST uint kShiftCount = 16u;
 // Rays that one lane traces, one after the other.
 RADIVOX_CONST uint kRaysPerLane = 32u;
 
-// What a ray hit, as the trace leaves it for the merge: a face, with kNearHit if it keeps its id; or kMissHit + bin (6: absorbed).
+// What a ray hit, as the trace leaves it for the merge: a face, with kNearHit if it keeps its id and kCloseHit if it does not count for the
+// face's weight; or kMissHit + bin (6: absorbed).
 RADIVOX_CONST uint kNearHit = 0x80000000u;
+RADIVOX_CONST uint kCloseHit = 0x40000000u;
+RADIVOX_CONST uint kHitFace = 0x3fffffffu;
+RADIVOX_CONST float kCloseDistance = 2.0f;  // voxels: surfaces that pass through each other see one another nearer than this, and nobody sees them
+// Weight of a ray: the area of the face it comes from, in parts of h². With these a face that every ray of its size finds has 128 · 64 · a_s.
+RADIVOX_CONST float kAreaUnits = 64.0f;
+RADIVOX_CONST uint kMostWeight = 0xff000000u;
 RADIVOX_CONST uint kMissHit = 0x7ffffff0u;
 RADIVOX_CONST uint kEmptySlot = 0xffffffffu;
 
