@@ -43,6 +43,9 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.read("normal", "unit shading normal");
   declareStructure(d);
   d.read("distance", "bricks to the nearest occupied brick, four bytes a word");
+  d.read("planes", "what rays are stopped by");
+  d.read("plane_extras", "where the planes of a voxel after its first are");
+  d.read("clearance", "half-size of the empty cube around each voxel").optional = true;
   d.read("face_radiosity", "reflected radiosity, W/m²");
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   d.scratch("raw", image, "E_indirect from each pixel's own rays");
@@ -56,9 +59,15 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   const std::vector<glm::vec4> directions = cosineDirections(kBlock * kBlock * rays_);
   directions_ = gpu::Buffer(device, "gather_pixels.directions", directions.size() * sizeof(glm::vec4));
   gpu::upload(device, directions_, directions);
-  trace_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
-                                                          .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kB, kI},
-                                                          .pushConstantBytes = 12});
+  const auto trace = [&](uint32_t skip) {
+    return gpu::Pipeline(device,
+                         gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
+                                                  .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kB, kI, kB, kB, kB},
+                                                  .pushConstantBytes = 16,
+                                                  .constants = {{0, skip}}});
+  };
+  traceBricks_ = trace(1);
+  if (context.has("clearance")) trace_ = trace(2);
   filter_ = gpu::Pipeline(
       device, gpu::ComputePipelineInfo{
                   .shader = "clustered_voxel/gather_pixels/filter.comp", .bindings = {kB, kI, kI, kI, kI}, .pushConstantBytes = 16});
@@ -70,9 +79,15 @@ void GatherPixels::record(graph::RecordContext& context) {
   const gpu::Image& normal = context.image("normal");
   const gpu::Image& raw = context.image("raw");
   struct {
-    uint32_t width, height, rays;
-  } push{raw.info().width, raw.info().height, rays_};
-  bindStructure(context, trace_, {position, normal, context.buffer("distance"), context.buffer("face_radiosity"), directions_, raw});
+    uint32_t width, height, rays, voxelCount;
+  } push{raw.info().width, raw.info().height, rays_, static_cast<uint32_t>(context.count("voxels"))};
+  // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
+  std::vector<const gpu::Buffer*> grown;
+  if (context.has("clearance")) grown = context.grown("clearance");
+  const gpu::Buffer& distance = context.buffer("distance");
+  bindStructure(context, grown.empty() ? traceBricks_ : trace_,
+                {position, normal, distance, context.buffer("face_radiosity"), directions_, raw, context.buffer("planes"),
+                 context.buffer("plane_extras"), grown.empty() ? distance : *grown.front()});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);

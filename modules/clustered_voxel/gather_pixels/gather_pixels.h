@@ -1,6 +1,6 @@
 // clustered_voxel.gather_pixels — indirect irradiance on screen, gathered by voxel rays from the pixels themselves.
 //
-// reads   gbuffer position, normal; the voxel structure and distance; face_radiosity
+// reads   gbuffer position, normal; the voxel structure and distance; planes, plane_extras, clearance? of visibility; face_radiosity
 // writes  irradiance image RGBA32F  E_indirect at the pixel's surface, W/m²; a: sky visibility; 0 on the sky
 // runs    when the view, the voxels or the radiosity change
 // cost    pixels × rays grid walks, then one pass of 25 reads a pixel (and 25 more a `smooth` pass)
@@ -8,8 +8,8 @@
 //         near-field light and shadow. Here neighbouring pixels trace different parts of one low-discrepancy set: any 4×4 block of pixels
 //         holds 16 × rays directions, and a filter over such blocks, which stops at edges of the surface, puts them together.
 //
-// A ray does not stop at whole voxels but at the mean plane of the surface in them (x_s, n_s), where it crosses that plane within the
-// voxel: the receiver's own flat surface never shades itself, and contact shadows are finer than the voxels.
+// Rays stop where those of visibility do (shaders/shared/voxel_cast.glsl): at the mean planes of the surface in voxels, so that the receiver's
+// own surface never shades itself, and contact shadows are finer than the voxels.
 #pragma once
 
 #include "engine/graph/node.h"
@@ -31,7 +31,7 @@ class GatherPixels : public graph::Node {
   uint32_t smooth_ = 1;
   params::Table table_;
   gpu::Buffer directions_;
-  gpu::Pipeline trace_, filter_;
+  gpu::Pipeline trace_, traceBricks_, filter_;
 };
 
 /// Cosine-weighted directions about +z: point i of the (0,2)-sequence of Sobol, so that any aligned power-of-two run is well spread.
