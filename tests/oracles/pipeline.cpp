@@ -34,6 +34,7 @@ Pipeline::Pipeline(gpu::Device& device, scene::Scene scene_, const PipelineOptio
   request_.width = options.width;
   request_.height = options.height;
   request_.bounces = options.bounces;
+  request_.aovs = options.aovs;
   gpuScene = std::make_unique<scene::GpuScene>(device, scene, options.lights);
   gpuScene->setCamera(scene.cameras.front(), options.width, options.height);
   graph::Plan plan = graph::compile(*graph, {traits_, request_, device.capabilities(), gpuScene->imports(), gpuScene->counts()});

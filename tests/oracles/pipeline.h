@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ struct PipelineOptions {
   std::vector<std::string> outputs{"composite.color"};        ///< what the graph keeps
   uint32_t width = 96, height = 64;
   uint32_t bounces = scene::kAllBounces;
+  std::set<std::string> aovs{"color"};  ///< of the request: some nodes look at it
   scene::LightOptions lights;
 };
 

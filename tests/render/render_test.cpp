@@ -65,6 +65,44 @@ TEST_F(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
   EXPECT_LT(second, 0.5 * first);
 }
 
+TEST_F(Render, GatherIsTheMeanOfItsRowAndKnowsItsSpread) {
+  PipelineOptions options = small(20);
+  options.aovs = {"color", "error"};
+  options.outputs = {"composite.color",      "shade.error",        "gather.irradiance",        "gather.error",         "gather.valid",
+                     "visibility.row_start", "visibility.entries", "bounce.cluster_radiosity", "bounce.face_radiosity"};
+  Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), options);
+  p.run();
+  const size_t faceCount = p.count("faces"), clusterCount = p.count("clusters");
+  ASSERT_LE(faceCount, shared::kRowsPerChunk) << "one chunk of rows";
+  const auto irradiance = p.buffer<glm::vec4>("gather.irradiance", faceCount);
+  const auto error = p.buffer<glm::vec3>("gather.error", faceCount);
+  const auto valid = p.buffer<uint32_t>("gather.valid"), starts = p.buffer<uint32_t>("visibility.row_start");
+  const auto clusters = p.buffer<glm::vec3>("bounce.cluster_radiosity", clusterCount),
+             faces = p.buffer<glm::vec3>("bounce.face_radiosity", faceCount);
+  const auto entries =
+      gpu::downloadAs<uint32_t>(oracles::sharedDevice(), *p.executor->findGrown("visibility.entries").at(0), starts[faceCount]);
+  size_t compared = 0;
+  for (uint32_t s = 0; s < faceCount; ++s) {
+    if (((valid[s >> 5] >> (s & 31)) & 1u) == 0) continue;
+    double rays = 0, sum = 0, squares = 0;
+    for (uint32_t e = starts[s]; e < starts[s + 1]; ++e) {
+      const uint32_t id = entries[e] & shared::kEntryIdMask, n = (entries[e] >> 24) + 1;
+      const double b = id < clusterCount ? clusters[id].x : id < clusterCount + faceCount ? faces[id - clusterCount].x : 0.f;
+      rays += n;
+      sum += n * b;
+      squares += n * b * b;
+    }
+    const double mean = sum / rays, spread = std::sqrt(std::max(0.0, squares / rays - mean * mean) / (rays - 1));
+    EXPECT_NEAR(irradiance[s].x, mean, 1e-4 * mean + 1e-6);
+    EXPECT_NEAR(error[s].x, spread, 1e-2 * spread + 1e-3 * mean + 1e-6);
+    ++compared;
+  }
+  EXPECT_GT(compared, 100u);
+  double shown = 0;
+  for (const float value : p.picture("shade.error").data) shown += value;
+  EXPECT_GT(shown, 0.0);
+}
+
 TEST_F(Render, ClustersSendBackTheWeightedMeanOfTheirFaces) {
   PipelineOptions options = small(20);
   options.outputs = {"composite.color", "inject.cluster_radiosity", "inject.face_irradiance", "visibility.weights", "surface.faces",

@@ -16,6 +16,10 @@ Gather::Gather()
                         params::Invalidates::Rerun)}) {}
 
 void Gather::declare(graph::Declaration& d) {
+  if (estimator_ == Estimator::Differential && d.request.aovs.count("error") != 0)
+    throw Error(
+        ErrorCode::BadInput,
+        "gather.estimator=differential has no ray counts to tell an error by; leave AOV error out, or use gather.estimator=counted");
   d.read("needed", "bit per face");
   d.read("row_start", "first entry of each face's row in its chunk");
   d.read("entries", "visibility entries");
@@ -27,6 +31,9 @@ void Gather::declare(graph::Declaration& d) {
   d.read("face_radiosity", "reflected radiosity, W/m²");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m²; a: sky visibility").persistent = true;
   d.write("valid", Shape::buffer(4, Extent::of("faces") / 32), "bit per face: gathered under the present light").persistent = true;
+  graph::Port& error = d.write("error", Shape::buffer(12, Extent::of("faces")), "standard error of E_indirect, W/m²");
+  error.persistent = true;
+  error.optional = true;
   d.readBack("status", Shape::buffer(4, 4), "faces gathered by this run, then dispatch arguments");
   d.scratch("todo", Shape::buffer(4, Extent::of("faces") / 32), "bit per face");
   d.scratch("list", Shape::buffer(4, Extent::of("faces")), "faces to gather");
@@ -40,10 +47,11 @@ void Gather::prepare(graph::PrepareContext& context) {
   scan_ = std::make_unique<gpu::Scan>(device);
   select_ = gpu::Pipeline(
       device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/select.comp", .bindings = {kB, kB, kB}, .pushConstantBytes = 12});
-  gather_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/gather.comp",
-                                                           .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                           .pushConstantBytes = 8,
-                                                           .constants = {{0, static_cast<uint32_t>(estimator_)}}});
+  gather_ = gpu::Pipeline(
+      device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/gather.comp",
+                                       .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                       .pushConstantBytes = 8,
+                                       .constants = {{0, static_cast<uint32_t>(estimator_)}, {1, context.has("error") ? 1u : 0u}}});
 }
 
 void Gather::record(graph::RecordContext& context) {
@@ -72,9 +80,10 @@ void Gather::record(graph::RecordContext& context) {
   commands.barrier();
   scan_->compactBits(commands, context.buffer("todo"), faceCount, context.buffer("list"), status, 64, context.buffer("scan"));
   commands.barrier();
-  commands.bind(gather_, {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"),
-                          context.buffer("clusters"), context.buffer("cluster_radiosity"), context.buffer("face_radiosity"),
-                          context.buffer("faces"), context.buffer("voxels"), context.buffer("irradiance")});
+  commands.bind(gather_,
+                {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("clusters"),
+                 context.buffer("cluster_radiosity"), context.buffer("face_radiosity"), context.buffer("faces"), context.buffer("voxels"),
+                 context.buffer("irradiance"), context.buffer(context.has("error") ? "error" : "irradiance")});
   struct {
     uint32_t clusterCount, faceCount;
   } push{static_cast<uint32_t>(context.count("clusters")), faceCount};

@@ -3,6 +3,8 @@
 // reads   needed; visibility row_start, entries, chunk_table; clusters, cluster_radiosity, face_radiosity; faces, voxels, grid
 // writes  irradiance* vec4 × F  E_indirect, W/m²; a: sky visibility, the share of rays that left the scene; meaningful where valid
 //         valid*      bits × F  the face has been gathered under the present light
+//         error*      vec3 × F  standard error of E_indirect, W/m², from the spread of its M rays as if they were independent: they are stratified,
+//                               so sampling errs less; what voxels and clusters leave out is not in it. Made only if read; counted only
 //         status      u32 × 2   faces gathered by this run
 // runs    when the needed set, the light or the visibility changes; gathers faces that are needed and not yet valid
 // cost    Σ row lengths of the gathered faces

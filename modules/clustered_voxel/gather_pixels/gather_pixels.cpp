@@ -60,11 +60,10 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   directions_ = gpu::Buffer(device, "gather_pixels.directions", directions.size() * sizeof(glm::vec4));
   gpu::upload(device, directions_, directions);
   const auto trace = [&](uint32_t skip) {
-    return gpu::Pipeline(device,
-                         gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
-                                                  .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kB, kI, kB, kB, kB},
-                                                  .pushConstantBytes = 16,
-                                                  .constants = {{0, skip}}});
+    return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
+                                                          .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kB, kI, kB, kB, kB},
+                                                          .pushConstantBytes = 16,
+                                                          .constants = {{0, skip}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);

@@ -25,6 +25,7 @@ class Shade : public graph::Node {
 
  private:
   Interpolation interpolation_ = Interpolation::Trilinear;
+  bool wantsError_ = false;  ///< AOV error
   params::Table table_;
   gpu::Pipeline shade_;
 };

@@ -8,6 +8,7 @@
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kEstimator = 0;  // Gather::Estimator
+layout(constant_id = 1) const bool kError = false;  // the standard error is wanted
 
 layout(set = 0, binding = 0, scalar) readonly buffer ListBuffer { uint list[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer StatusBuffer { uint status[]; };
@@ -19,6 +20,7 @@ layout(set = 0, binding = 6, scalar) readonly buffer FaceRadiosityBuffer { vec3 
 layout(set = 0, binding = 7, scalar) readonly buffer FacesBuffer { Face faces[]; };
 layout(set = 0, binding = 8, scalar) readonly buffer VoxelBuffer { uint voxels[]; };
 layout(set = 0, binding = 9, scalar) buffer IrradianceBuffer { vec4 irradiance[]; };
+layout(set = 0, binding = 10, scalar) writeonly buffer ErrorBuffer { vec3 standardError[]; };
 layout(push_constant, scalar) uniform Push {
   uint clusterCount;
   uint faceCount;
@@ -40,6 +42,7 @@ void main() {
   uint end = rowStart[rowSlot(s) + 1];
   Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
   vec3 sum = vec3(0.0);
+  vec3 squares = vec3(0.0);
   uint rays = 0, misses = 0;
   // differential: the receiver is the voxel face's centre and axis
   uint f = faces[s].key & 7u;
@@ -70,7 +73,13 @@ void main() {
       }
     }
     sum += weight * b;
+    if (kError) squares += weight * b * b;
   }
   float share = rays > 0u ? 1.0 / float(rays) : 0.0;
   irradiance[s] = vec4(kEstimator == 1 ? sum : sum * share, float(misses) * share);
+  if (kError) {
+    // Of the mean of M independent rays: √((mean of squares − square of the mean) / (M − 1)).
+    vec3 mean = sum * share;
+    standardError[s] = rays > 1u ? sqrt(max(squares * share - mean * mean, vec3(0.0)) / float(rays - 1u)) : vec3(0.0);
+  }
 }

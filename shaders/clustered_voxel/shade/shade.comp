@@ -7,22 +7,28 @@
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kInterpolation = 0;  // Shade::Interpolation
+layout(constant_id = 1) const bool kError = false;      // the standard error is wanted
 
 layout(set = 0, binding = 6, rgba32f) readonly uniform image2D positionImage;
 layout(set = 0, binding = 7, rgba32f) readonly uniform image2D normalImage;
 layout(set = 0, binding = 8, scalar) readonly buffer FilteredBuffer { vec4 filtered[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer ValidBuffer { uint valid[]; };
 layout(set = 0, binding = 10, rgba32f) writeonly uniform image2D irradianceImage;
+layout(set = 0, binding = 11, scalar) readonly buffer ErrorBuffer { vec3 standardError[]; };
+layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D errorImage;
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
 };
 
 vec4 sums[4];  // per axis; the fourth is the fallback of visitReceivers
+vec3 errors[4];
 float totals[4];
 void take(uint s, float weight, uint k) {
   if ((valid[s >> 5] & (1u << (s & 31u))) == 0u) return;
   sums[k] += weight * filtered[s];
+  // Faces about one point see much the same: their errors add up in the worst case.
+  if (kError) errors[k] += weight * standardError[s];
   totals[k] += weight;
 }
 #define RECEIVER_VISIT(face, weight, k) take(face, weight, k);
@@ -34,10 +40,12 @@ void main() {
   ivec2 pixel = ivec2(i % width, i / width);
   vec4 position = imageLoad(positionImage, pixel);
   vec4 result = vec4(0.0);
+  vec3 error = vec3(0.0);
   if (position.w != 0.0) {
     vec3 n = imageLoad(normalImage, pixel).xyz;
     for (uint k = 0; k < 4; ++k) {
       sums[k] = vec4(0.0);
+      errors[k] = vec3(0.0);
       totals[k] = 0.0;
     }
     visitReceivers(toGridSpace(grid, position.xyz), n, kInterpolation == 0);
@@ -45,10 +53,17 @@ void main() {
     for (uint k = 0; k < 3; ++k)
       if (totals[k] > 0.0) {
         result += n[k] * n[k] * sums[k] / totals[k];
+        if (kError) error += n[k] * n[k] * errors[k] / totals[k];
         mixed += n[k] * n[k];
       }
-    if (mixed > 0.0) result /= mixed;
-    else if (totals[3] > 0.0) result = sums[3] / totals[3];
+    if (mixed > 0.0) {
+      result /= mixed;
+      error /= mixed;
+    } else if (totals[3] > 0.0) {
+      result = sums[3] / totals[3];
+      error = errors[3] / totals[3];
+    }
   }
   imageStore(irradianceImage, pixel, result);
+  if (kError) imageStore(errorImage, pixel, vec4(error, 0.0));
 }
