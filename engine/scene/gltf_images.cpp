@@ -1,5 +1,6 @@
 // PNG and JPEG for glTF textures.
 #include <climits>
+#include <cstring>
 
 #include "engine/scene/gltf_materials.h"
 
@@ -10,13 +11,6 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 16384
-#include <stb_image.h>
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
@@ -25,17 +19,63 @@
 
 namespace radivox::scene::gltf {
 
-std::optional<TextureImage> decodeImage(std::span<const std::byte> bytes) {
-  if (bytes.empty() || bytes.size() > INT_MAX) return std::nullopt;
-  int width = 0, height = 0, channels = 0;
-  stbi_uc* pixels =
-      stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width, &height, &channels, 4);
-  if (pixels == nullptr) return std::nullopt;
+namespace {
+
+constexpr uint64_t kMaxSide = 16384;
+
+struct Size {
+  uint64_t width = 0, height = 0;
+  uint64_t bits = 8;  ///< a channel
+  /// tinygltf counts the bytes in an int.
+  bool isDecodable() const {
+    return width > 0 && height > 0 && width <= kMaxSide && height <= kMaxSide && width * height * 4 * (bits / 8) <= INT_MAX;
+  }
+};
+
+uint64_t readBigEndian(const unsigned char* from, size_t count) {
+  uint64_t value = 0;
+  for (size_t i = 0; i < count; ++i) value = value << 8 | from[i];
+  return value;
+}
+
+/// As the header has it; zeros when it is neither PNG nor JPEG. Read here because tinygltf decodes whatever stb knows, at any size.
+Size readSize(std::span<const unsigned char> bytes) {
+  constexpr unsigned char kPng[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  if (bytes.size() > 24 && std::memcmp(bytes.data(), kPng, sizeof kPng) == 0)
+    return {readBigEndian(&bytes[16], 4), readBigEndian(&bytes[20], 4), bytes[24] == 16 ? 16u : 8u};
+  if (bytes.size() < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return {};
+  for (size_t at = 2; at + 9 <= bytes.size();) {  // a JPEG's segments, up to a start of frame
+    const unsigned char marker = bytes[at + 1];
+    if (bytes[at] != 0xff || marker == 0xff) {
+      ++at;  // padding
+    } else if (marker >= 0xc0 && marker <= 0xc2) {
+      return {readBigEndian(&bytes[at + 7], 2), readBigEndian(&bytes[at + 5], 2)};
+    } else {
+      at += 2 + readBigEndian(&bytes[at + 2], 2);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<TextureImage> decodeImage(std::span<const unsigned char> bytes) {
+  const Size size = readSize(bytes);
+  if (!size.isDecodable() || bytes.size() > INT_MAX) return std::nullopt;
+  tinygltf::Image decoded;
+  std::string ignored;
+  // Holding tinygltf to the size that was checked: a JPEG may have another start of frame.
+  if (!tinygltf::LoadImageData(&decoded, 0, &ignored, &ignored, static_cast<int>(size.width), static_cast<int>(size.height), bytes.data(),
+                               static_cast<int>(bytes.size()), nullptr))
+    return std::nullopt;
   TextureImage image;
-  image.width = static_cast<uint32_t>(width);
-  image.height = static_cast<uint32_t>(height);
-  image.rgba.assign(pixels, pixels + static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
-  stbi_image_free(pixels);
+  image.width = static_cast<uint32_t>(size.width);
+  image.height = static_cast<uint32_t>(size.height);
+  if (decoded.bits == 16) {  // the upper byte of each, which is the second
+    for (size_t i = 1; i < decoded.image.size(); i += 2) image.rgba.push_back(decoded.image[i]);
+  } else {
+    image.rgba = std::move(decoded.image);
+  }
   return image;
 }
 
