@@ -143,6 +143,24 @@ constexpr Rule kRules[] = {
     {"scene", Kind::Index, "scenes"},
 };
 
+/// tinygltf walks extensions and extras recursively: a file must not choose how deep.
+constexpr int kMaxDepth = 128;
+
+bool nestsTooDeep(std::string_view text) {
+  int depth = 0;
+  bool inString = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') inString = !inString;
+    if (c == '\\') ++i;  // only in strings, where it may hide a quote
+    if (inString) continue;
+    if (c == '{' || c == '[') ++depth;
+    if (c == '}' || c == ']') --depth;
+    if (depth > kMaxDepth) return true;
+  }
+  return false;
+}
+
 /// The chain of members and entries that leads to a value; put into words only for errors.
 struct Place {
   const Place* parent = nullptr;
@@ -291,15 +309,12 @@ void failAt(const std::string& file, const std::string& place, const std::string
 }
 
 nlohmann::json parseJson(const std::string& file, std::span<const std::byte> text, size_t offset) {
-  // tinygltf walks extensions and extras recursively: a file must not choose how deep.
-  constexpr int kMaxDepth = 128;
   const char* begin = reinterpret_cast<const char*>(text.data());
+  if (nestsTooDeep({begin, text.size()}))
+    failAt(file, "", "the JSON is malformed: it nests deeper than " + std::to_string(kMaxDepth) + " levels; export the file again");
   json root;
   try {
-    root = json::parse(begin, begin + text.size(), [&](int depth, json::parse_event_t, json&) {
-      if (depth > kMaxDepth) failAt(file, "", "the JSON is malformed: it nests deeper than 128 levels; export the file again");
-      return true;
-    });
+    root = json::parse(begin, begin + text.size());
   } catch (const json::parse_error& e) {
     failAt(file, "byte " + std::to_string(offset + e.byte), "the JSON is malformed or cut off; copy or export the file again");
   } catch (const json::exception&) {  // numbers beyond double
