@@ -326,7 +326,12 @@ nlohmann::json parseJson(const std::string& file, std::span<const std::byte> tex
 
 void checkJson(const std::string& file, json& root) {
   Checker checker(file, root);
-  for (const Rule& rule : kRules) checker.check(rule);
+  for (const Rule& rule : kRules) {
+    checker.check(rule);
+    if (rule.place != "asset.version") continue;  // before the rest, which version 1 lays out differently
+    const std::string version = root["asset"]["version"].get<std::string>();
+    if (!version.starts_with("2.")) failAt(file, "asset.version", "is \"" + version.substr(0, 20) + "\"; export the file as glTF 2.0");
+  }
 }
 
 }  // namespace radivox::scene::gltf

@@ -157,7 +157,8 @@ Document::Document(const std::string& path) : path_(path), bytes_(readFile(path)
   checkExtensions(root);
   adaptForTinygltf(root);
   load(root);
-  decompress();
+  decompressViews();
+  decompressPrimitives();
 }
 
 void Document::fail(const std::string& place, const std::string& message) const { failAt(path_, place, message); }
@@ -199,8 +200,6 @@ std::span<const std::byte> Document::splitContainer(std::span<const std::byte> f
 }
 
 void Document::checkExtensions(const json& root) {
-  const std::string version = root["asset"]["version"].get<std::string>();
-  if (version.rfind("2.", 0) != 0) fail("asset.version", "is \"" + version.substr(0, 20) + "\"; export the file as glTF 2.0");
   const auto list = [&](const char* key) { return root.value(key, std::vector<std::string>()); };
   const std::vector<std::string> required = list("extensionsRequired");
   for (size_t i = 0; i < required.size(); ++i) {
@@ -354,13 +353,16 @@ void Document::readBuffer(size_t index, uint64_t byteLength, std::vector<unsigne
 
 std::span<const std::byte> Document::bufferView(size_t index) const {
   const tinygltf::BufferView& view = model_.bufferViews[index];
-  const auto buffer = std::as_bytes(std::span(model_.buffers[static_cast<size_t>(view.buffer)].data));
-  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
-    fail(placeOf("bufferViews", index), "bytes " + std::to_string(view.byteOffset) + " + " + std::to_string(view.byteLength) +
-                                            " end beyond " + placeOf("buffers", static_cast<size_t>(view.buffer)) + ", which has " +
-                                            std::to_string(buffer.size()) + "; copy or export the file again");
+  return slice(static_cast<size_t>(view.buffer), view.byteOffset, view.byteLength, placeOf("bufferViews", index));
+}
+
+std::span<const std::byte> Document::slice(size_t index, size_t offset, size_t length, const std::string& place) const {
+  const auto buffer = std::as_bytes(std::span(model_.buffers[index].data));
+  if (offset > buffer.size() || length > buffer.size() - offset) {
+    fail(place, "bytes " + std::to_string(offset) + " + " + std::to_string(length) + " end beyond " + placeOf("buffers", index) +
+                    ", which has " + std::to_string(buffer.size()) + "; copy or export the file again");
   }
-  return buffer.subspan(view.byteOffset, view.byteLength);
+  return buffer.subspan(offset, length);
 }
 
 std::span<const unsigned char> Document::image(size_t index) const { return model_.images[index].image; }

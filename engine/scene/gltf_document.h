@@ -69,8 +69,10 @@ class Document {
   void load(const nlohmann::json& root);
   std::optional<std::vector<unsigned char>> readUri(const std::string& uri, std::string& problem) const;
   void readBuffer(size_t index, uint64_t byteLength, std::vector<unsigned char>& out) const;
-  void decompress();
+  void decompressViews();
+  void decompressPrimitives();
   std::span<const std::byte> bufferView(size_t index) const;
+  std::span<const std::byte> slice(size_t buffer, size_t offset, size_t length, const std::string& place) const;
   Accessor describe(int index, std::string_view types, const std::string& place) const;
   template <class Store>
   void forEachComponent(const Accessor& accessor, Store store) const;
