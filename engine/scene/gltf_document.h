@@ -10,8 +10,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tiny_gltf.h>
 #include <vector>
+
+#include "engine/scene/gltf_tinygltf.h"
 
 
 namespace radivox::scene::gltf {
