@@ -1,7 +1,9 @@
 #include "engine/scene/gltf_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/error.h"
 
@@ -19,129 +21,86 @@ enum class Kind {
   Flag,
   Number,
   Positive,
-  Numbers,  ///< `size` of them, or any number of them when that is 0
+  Numbers,  ///< as many as `detail` says, or any number of them
   Whole,
   Small,  ///< a whole number that tinygltf keeps in an int
   Index,  ///< below the length of the list that `detail` names
 };
 
 struct Rule {
-  std::string_view place;  ///< "[]": every entry of a list, "*": every member
   Kind kind;
-  std::string_view detail = {};
-  size_t size = 0;
-  bool required = false;
-  const char* fallback = nullptr;  ///< JSON to write where the member is missing
+  std::string_view detail;
+  /// "[]": every entry of a list, "*": every member, "!": required where what holds it is there, "$": see kPrefixes.
+  std::string_view places;
 };
 
-constexpr std::string_view kLights = "extensions.KHR_lights_punctual.lights";
-
-#define RADIVOX_TEXTURE_RULES(PLACE)                                                            \
-  {PLACE ".index", Kind::Index, "textures", 0, true}, {PLACE ".texCoord", Kind::Small},         \
-      {PLACE ".extensions.KHR_texture_transform.offset", Kind::Numbers, {}, 2},                 \
-      {PLACE ".extensions.KHR_texture_transform.scale", Kind::Numbers, {}, 2},                  \
-      {PLACE ".extensions.KHR_texture_transform.rotation", Kind::Number},                       \
-      {PLACE ".extensions.KHR_texture_transform.texCoord", Kind::Small}
-#define RADIVOX_MESHOPT_RULES(PLACE)                                                                                       \
-  {PLACE ".buffer", Kind::Index, "buffers", 0, true}, {PLACE ".byteOffset", Kind::Small},                                  \
-      {PLACE ".byteLength", Kind::Small, {}, 0, true}, {PLACE ".byteStride", Kind::Small, {}, 0, true},                    \
-      {PLACE ".count", Kind::Small, {}, 0, true}, {PLACE ".mode", Kind::Choice, "ATTRIBUTES TRIANGLES INDICES", 0, true},  \
-      {PLACE ".filter", Kind::Choice, "NONE OCTAHEDRAL QUATERNION EXPONENTIAL"}
+/// Objects that stand in several places.
+constexpr std::pair<std::string_view, std::string_view> kPrefixes[] = {
+    {"$texture", "materials[].pbrMetallicRoughness.baseColorTexture"},
+    {"$texture", "materials[].emissiveTexture"},
+    {"$texture", "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture"},
+    {"$meshopt", "bufferViews[].extensions.EXT_meshopt_compression"},
+    {"$meshopt", "bufferViews[].extensions.KHR_meshopt_compression"},
+    {"$draco", "meshes[].primitives[].extensions.KHR_draco_mesh_compression"},
+    {"$light", "extensions.KHR_lights_punctual.lights[]"},
+};
 
 constexpr Rule kRules[] = {
-    {"asset", Kind::Object, {}, 0, true},
-    {"asset.version", Kind::Text, {}, 0, true},
-    {"extensionsUsed[]", Kind::Text},
-    {"extensionsRequired[]", Kind::Text},
-    {"buffers[].byteLength", Kind::Whole, {}, 0, true},
-    {"buffers[].uri", Kind::Text},
-    {"bufferViews[].buffer", Kind::Index, "buffers", 0, true},
-    {"bufferViews[].byteOffset", Kind::Whole},
-    {"bufferViews[].byteLength", Kind::Whole, {}, 0, true},
-    {"bufferViews[].byteStride", Kind::Whole},
-    RADIVOX_MESHOPT_RULES("bufferViews[].extensions.EXT_meshopt_compression"),
-    RADIVOX_MESHOPT_RULES("bufferViews[].extensions.KHR_meshopt_compression"),
-    {"accessors[].type", Kind::Choice, "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4", 0, true},
-    {"accessors[].componentType", Kind::Whole, {}, 0, true},
-    {"accessors[].count", Kind::Whole, {}, 0, true},
-    {"accessors[].bufferView", Kind::Index, "bufferViews"},
-    {"accessors[].byteOffset", Kind::Whole},
-    {"accessors[].normalized", Kind::Flag},
-    {"accessors[].sparse.count", Kind::Small, {}, 0, true},
-    {"accessors[].sparse.indices", Kind::Object, {}, 0, true},
-    {"accessors[].sparse.indices.bufferView", Kind::Index, "bufferViews", 0, true},
-    {"accessors[].sparse.indices.byteOffset", Kind::Small},
-    {"accessors[].sparse.indices.componentType", Kind::Small, {}, 0, true},
-    {"accessors[].sparse.values", Kind::Object, {}, 0, true},
-    {"accessors[].sparse.values.bufferView", Kind::Index, "bufferViews", 0, true},
-    {"accessors[].sparse.values.byteOffset", Kind::Small},
-    {"images[].bufferView", Kind::Index, "bufferViews"},
-    {"images[].uri", Kind::Text},
-    {"images[].name", Kind::Text},
-    {"samplers[].wrapS", Kind::Small},
-    {"samplers[].wrapT", Kind::Small},
-    {"samplers[].magFilter", Kind::Small},
-    {"textures[].source", Kind::Index, "images"},
-    {"textures[].sampler", Kind::Index, "samplers"},
-    {"textures[].name", Kind::Text},
-    {"materials[].name", Kind::Text},
-    {"materials[].pbrMetallicRoughness.baseColorFactor", Kind::Numbers, {}, 4},
-    RADIVOX_TEXTURE_RULES("materials[].pbrMetallicRoughness.baseColorTexture"),
-    {"materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor", Kind::Numbers, {}, 4},
-    RADIVOX_TEXTURE_RULES("materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture"),
-    {"materials[].extensions.KHR_materials_unlit", Kind::Object},
-    {"materials[].emissiveFactor", Kind::Numbers, {}, 3},
-    RADIVOX_TEXTURE_RULES("materials[].emissiveTexture"),
-    {"materials[].extensions.KHR_materials_emissive_strength.emissiveStrength", Kind::Number},
-    {"materials[].alphaMode", Kind::Choice, "OPAQUE MASK BLEND"},
-    {"materials[].alphaCutoff", Kind::Number},
-    {"materials[].doubleSided", Kind::Flag},
-    {"meshes[].primitives", Kind::List, {}, 0, true},
-    {"meshes[].primitives[].attributes", Kind::Object, {}, 0, true},
-    {"meshes[].primitives[].attributes.*", Kind::Index, "accessors"},
-    {"meshes[].primitives[].indices", Kind::Index, "accessors"},
-    {"meshes[].primitives[].material", Kind::Index, "materials"},
-    {"meshes[].primitives[].mode", Kind::Small},
-    {"meshes[].primitives[].targets[].*", Kind::Index, "accessors"},
-    {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.bufferView", Kind::Index, "bufferViews", 0, true},
-    {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.attributes", Kind::Object, {}, 0, true},
-    {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.attributes.*", Kind::Small},
-    {"meshes[].weights", Kind::Numbers},
-    {"nodes[].name", Kind::Text},
-    {"nodes[].mesh", Kind::Index, "meshes"},
-    {"nodes[].skin", Kind::Index, "skins"},
-    {"nodes[].camera", Kind::Index, "cameras"},
-    {"nodes[].children[]", Kind::Index, "nodes"},
-    {"nodes[].matrix", Kind::Numbers, {}, 16},
-    {"nodes[].translation", Kind::Numbers, {}, 3},
-    {"nodes[].rotation", Kind::Numbers, {}, 4},
-    {"nodes[].scale", Kind::Numbers, {}, 3},
-    {"nodes[].weights", Kind::Numbers},
-    {"nodes[].extensions.KHR_lights_punctual.light", Kind::Index, kLights, 0, true},
-    {"skins[].joints", Kind::List, {}, 0, true},
-    {"skins[].joints[]", Kind::Index, "nodes"},
-    {"skins[].inverseBindMatrices", Kind::Index, "accessors"},
-    {"cameras[].name", Kind::Text},
-    {"cameras[].type", Kind::Choice, "perspective orthographic", 0, true},
-    {"cameras[].perspective", Kind::Object, {}, 0, false, "{}"},
-    {"cameras[].perspective.yfov", Kind::Number, {}, 0, false, "0.0"},
-    {"cameras[].perspective.znear", Kind::Number, {}, 0, false, "0.0"},
-    {"cameras[].orthographic", Kind::Object, {}, 0, false, "{}"},
-    {"cameras[].orthographic.xmag", Kind::Number, {}, 0, false, "0.0"},
-    {"cameras[].orthographic.ymag", Kind::Number, {}, 0, false, "0.0"},
-    {"cameras[].orthographic.znear", Kind::Number, {}, 0, false, "0.0"},
-    {"cameras[].orthographic.zfar", Kind::Number, {}, 0, false, "0.0"},
-    {"extensions.KHR_lights_punctual.lights[].name", Kind::Text},
-    {"extensions.KHR_lights_punctual.lights[].type", Kind::Choice, "directional point spot", 0, true},
-    {"extensions.KHR_lights_punctual.lights[].color", Kind::Numbers, {}, 3},
-    {"extensions.KHR_lights_punctual.lights[].intensity", Kind::Number},
-    {"extensions.KHR_lights_punctual.lights[].range", Kind::Positive},
-    {"extensions.KHR_lights_punctual.lights[].spot", Kind::Object, {}, 0, false, "{}"},
-    {"extensions.KHR_lights_punctual.lights[].spot.innerConeAngle", Kind::Number},
-    {"extensions.KHR_lights_punctual.lights[].spot.outerConeAngle", Kind::Number},
-    {"scenes[].nodes[]", Kind::Index, "nodes"},
-    {"scene", Kind::Index, "scenes"},
+    {Kind::Object, "", "asset!"},
+    {Kind::Text, "", "asset.version!"},
+    {Kind::Object, "", "accessors[].sparse.indices! accessors[].sparse.values! materials[].extensions.KHR_materials_unlit"},
+    {Kind::Object, "", "meshes[].primitives[].attributes! $draco.attributes!"},
+    {Kind::List, "", "meshes[].primitives! skins[].joints!"},
+    {Kind::Text, "", "extensionsUsed[] extensionsRequired[] buffers[].uri images[].uri images[].name textures[].name"},
+    {Kind::Text, "", "materials[].name nodes[].name cameras[].name $light.name"},
+    {Kind::Choice, "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4", "accessors[].type!"},
+    {Kind::Choice, "OPAQUE MASK BLEND", "materials[].alphaMode"},
+    {Kind::Choice, "perspective orthographic", "cameras[].type!"},
+    {Kind::Choice, "directional point spot", "$light.type!"},
+    {Kind::Choice, "ATTRIBUTES TRIANGLES INDICES", "$meshopt.mode!"},
+    {Kind::Choice, "NONE OCTAHEDRAL QUATERNION EXPONENTIAL", "$meshopt.filter"},
+    {Kind::Flag, "", "accessors[].normalized materials[].doubleSided"},
+    {Kind::Number, "", "$texture.extensions.KHR_texture_transform.rotation materials[].alphaCutoff"},
+    {Kind::Number, "", "materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"},
+    {Kind::Number, "", "cameras[].perspective.yfov cameras[].perspective.znear"},
+    {Kind::Number, "", "cameras[].orthographic.xmag cameras[].orthographic.ymag cameras[].orthographic.znear cameras[].orthographic.zfar"},
+    {Kind::Number, "", "$light.intensity $light.spot.innerConeAngle $light.spot.outerConeAngle"},
+    {Kind::Positive, "", "$light.range"},
+    {Kind::Numbers, "", "meshes[].weights nodes[].weights"},
+    {Kind::Numbers, "2", "$texture.extensions.KHR_texture_transform.offset $texture.extensions.KHR_texture_transform.scale"},
+    {Kind::Numbers, "3", "materials[].emissiveFactor nodes[].translation nodes[].scale $light.color"},
+    {Kind::Numbers, "4", "materials[].pbrMetallicRoughness.baseColorFactor nodes[].rotation"},
+    {Kind::Numbers, "4", "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor"},
+    {Kind::Numbers, "16", "nodes[].matrix"},
+    {Kind::Whole, "", "buffers[].byteLength! bufferViews[].byteOffset bufferViews[].byteLength! bufferViews[].byteStride"},
+    {Kind::Whole, "", "accessors[].componentType! accessors[].count! accessors[].byteOffset"},
+    {Kind::Small, "", "accessors[].sparse.count! accessors[].sparse.indices.byteOffset accessors[].sparse.indices.componentType!"},
+    {Kind::Small, "", "accessors[].sparse.values.byteOffset samplers[].wrapS samplers[].wrapT samplers[].magFilter"},
+    {Kind::Small, "", "$texture.texCoord $texture.extensions.KHR_texture_transform.texCoord meshes[].primitives[].mode"},
+    {Kind::Small, "", "$meshopt.byteOffset $meshopt.byteLength! $meshopt.byteStride! $meshopt.count! $draco.attributes.*"},
+    {Kind::Index, "buffers", "bufferViews[].buffer! $meshopt.buffer!"},
+    {Kind::Index, "bufferViews", "accessors[].bufferView accessors[].sparse.indices.bufferView! accessors[].sparse.values.bufferView!"},
+    {Kind::Index, "bufferViews", "images[].bufferView $draco.bufferView!"},
+    {Kind::Index, "accessors", "meshes[].primitives[].attributes.* meshes[].primitives[].indices meshes[].primitives[].targets[].*"},
+    {Kind::Index, "accessors", "skins[].inverseBindMatrices"},
+    {Kind::Index, "images", "textures[].source"},
+    {Kind::Index, "samplers", "textures[].sampler"},
+    {Kind::Index, "textures", "$texture.index!"},
+    {Kind::Index, "materials", "meshes[].primitives[].material"},
+    {Kind::Index, "meshes", "nodes[].mesh"},
+    {Kind::Index, "skins", "nodes[].skin"},
+    {Kind::Index, "cameras", "nodes[].camera"},
+    {Kind::Index, "nodes", "nodes[].children[] skins[].joints[] scenes[].nodes[]"},
+    {Kind::Index, "scenes", "scene"},
+    {Kind::Index, "extensions.KHR_lights_punctual.lights", "nodes[].extensions.KHR_lights_punctual.light!"},
 };
+
+/// The first word of `words`, which loses it.
+std::string_view takeWord(std::string_view& words, char separator) {
+  const std::string_view word = words.substr(0, words.find(separator));
+  words.remove_prefix(std::min(words.size(), word.size() + 1));
+  return word;
+}
 
 /// tinygltf walks extensions and extras recursively: a file must not choose how deep.
 constexpr int kMaxDepth = 128;
@@ -177,7 +136,15 @@ struct Place {
 class Checker {
  public:
   Checker(const std::string& file, json& root) : file_(file), root_(root) {}
-  void check(const Rule& rule) { visit(rule, rule.place, root_, Place{}); }
+  void check(const Rule& rule) {
+    for (std::string_view places = rule.places; !places.empty();) {
+      const std::string_view place = takeWord(places, ' ');
+      if (place[0] != '$') visit(rule, place, root_, Place{});
+      for (const auto& [prefix, meaning] : kPrefixes) {
+        if (place.starts_with(prefix)) visit(rule, std::string(meaning).append(place.substr(prefix.size())), root_, Place{});
+      }
+    }
+  }
 
  private:
   [[noreturn]] void fail(const Place& place, const std::string& message) const {
@@ -192,20 +159,16 @@ class Checker {
   void visit(const Rule& rule, std::string_view rest, json& value, const Place& place) {
     if (rest.empty()) return checkValue(rule, value, place);
     if (!value.is_object()) failType(place, "an object", value);
-    const size_t end = rest.find('.');
-    std::string_view name = rest.substr(0, end);
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    std::string_view name = takeWord(rest, '.');
     if (name == "*") {
       for (auto it = value.begin(); it != value.end(); ++it) visit(rule, rest, it.value(), Place{&place, it.key()});
       return;
     }
-    const bool list = name.ends_with("[]");
-    if (list) name.remove_suffix(2);
-    auto found = value.find(name);
+    const bool required = name.ends_with('!'), list = name.ends_with("[]");
+    name.remove_suffix(required ? 1 : list ? 2 : 0);
+    const auto found = value.find(name);
     if (found == value.end()) {
-      if (!rest.empty() || list) return;
-      if (rule.required) fail(place, "required property \"" + std::string(name) + "\" is missing; export the file again or add it");
-      if (rule.fallback != nullptr) value[std::string(name)] = json::parse(rule.fallback);
+      if (required) fail(place, "required property \"" + std::string(name) + "\" is missing; export the file again or add it");
       return;
     }
     const Place here{&place, name};
@@ -240,8 +203,8 @@ class Checker {
         break;
       case Kind::Numbers:
         if (!value.is_array()) failType(place, "an array", value);
-        if (rule.size > 0 && value.size() != rule.size)
-          fail(place, "has " + std::to_string(value.size()) + " numbers instead of " + std::to_string(rule.size));
+        if (!rule.detail.empty() && std::to_string(value.size()) != rule.detail)
+          fail(place, "has " + std::to_string(value.size()) + " numbers instead of " + std::string(rule.detail));
         for (size_t i = 0; i < value.size(); ++i) makeFloat(value[i], Place{&place, {}, i});
         break;
       case Kind::Whole:
@@ -259,9 +222,7 @@ class Checker {
     if (!value.is_string()) failType(place, "a string", value);
     const std::string text = value.get<std::string>();
     for (std::string_view words = rule.detail; !words.empty();) {
-      const std::string_view word = words.substr(0, words.find(' '));
-      if (text == word) return;
-      words.remove_prefix(std::min(words.size(), word.size() + 1));
+      if (text == takeWord(words, ' ')) return;
     }
     fail(place, "is \"" + text.substr(0, 60) + "\", should be one of " + std::string(rule.detail));
   }
@@ -270,8 +231,7 @@ class Checker {
     const json* at = &root_;
     const std::string_view name = table.substr(table.rfind('.') + 1);  // all of it when there is no dot
     while (at != nullptr && !table.empty()) {
-      const std::string_view member = table.substr(0, table.find('.'));
-      table.remove_prefix(std::min(table.size(), member.size() + 1));
+      const std::string_view member = takeWord(table, '.');
       const auto found = at->is_object() ? at->find(member) : at->end();
       at = found == at->end() ? nullptr : &*found;
     }
@@ -328,7 +288,7 @@ void checkJson(const std::string& file, json& root) {
   Checker checker(file, root);
   for (const Rule& rule : kRules) {
     checker.check(rule);
-    if (rule.place != "asset.version") continue;  // before the rest, which version 1 lays out differently
+    if (rule.places != "asset.version!") continue;  // before the rest, which version 1 lays out differently
     const std::string version = root["asset"]["version"].get<std::string>();
     if (!version.starts_with("2.")) failAt(file, "asset.version", "is \"" + version.substr(0, 20) + "\"; export the file as glTF 2.0");
   }

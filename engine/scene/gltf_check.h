@@ -19,7 +19,7 @@ namespace radivox::scene::gltf {
 nlohmann::json parseJson(const std::string& file, std::span<const std::byte> text, size_t offset);
 
 /// Checks every value that the importer reads: type, required or not, indices in range. Whole numbers become integers and other
-/// numbers become floats, as tinygltf tells them apart; what tinygltf demands and glTF does not gets its default. Throws BadInput.
+/// numbers become floats, as tinygltf tells them apart. Throws BadInput.
 void checkJson(const std::string& file, nlohmann::json& root);
 
 }  // namespace radivox::scene::gltf

@@ -32,8 +32,8 @@ void putIntoBuffer(tinygltf::Model& model, tinygltf::BufferView& view, std::vect
 
 #ifdef RADIVOX_WITH_MESHOPTIMIZER
 /// The bytes of a compressed view; nothing when the data is broken.
-std::optional<std::vector<unsigned char>> decodeMeshopt(std::span<const std::byte> from, size_t count, size_t stride, const std::string& mode,
-                                                        const std::string& filter) {
+std::optional<std::vector<unsigned char>> decodeMeshopt(std::span<const std::byte> from, size_t count, size_t stride,
+                                                        const std::string& mode, const std::string& filter) {
   const auto* data = reinterpret_cast<const unsigned char*>(from.data());
   // Vertices take at least a bit pair for 16 bytes, indices a byte for three: what claims more is refused before memory is taken for it.
   if (stride == 0 || stride > 256 || count * stride > from.size() * 64) return std::nullopt;
@@ -178,7 +178,8 @@ void Document::decompressPrimitives() {
         if (original == primitive.attributes.end()) continue;
         const auto id = static_cast<uint32_t>(extension->Get("attributes").Get(name).GetNumberAsInt());
         const int accessor = addDracoAttribute(model_, *mesh.value(), id, original->second);
-        if (accessor < 0) fail(place + ".attributes." + name, "is not in the compressed data as its accessor says; compress the file again");
+        if (accessor < 0)
+          fail(place + ".attributes." + name, "is not in the compressed data as its accessor says; compress the file again");
         original->second = accessor;
       }
       primitive.indices = addDracoIndices(model_, *mesh.value());

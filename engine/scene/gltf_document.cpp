@@ -62,18 +62,24 @@ bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
 
 std::string uriForMessages(const std::string& uri) { return isDataUri(uri) ? "the data URI" : "\"" + uri + "\""; }
 
+template <class Use>
+void forEachEntry(json& root, const char* place, Use use) {
+  const json::json_pointer pointer(place);
+  if (!root.contains(pointer)) return;
+  for (json& entry : root[pointer]) use(entry);
+}
+
 /// Calls `use` with every texture info that the importer reads (gltf_materials.cpp).
 template <class Use>
-void forEachTextureInfo(const json& root, Use use) {
-  static const json::json_pointer kPlaces[] = {
-      json::json_pointer("/pbrMetallicRoughness/baseColorTexture"), json::json_pointer("/emissiveTexture"),
-      json::json_pointer("/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture")};
-  if (!root.contains("materials")) return;
-  for (const json& material : root["materials"]) {
+void forEachTextureInfo(json& root, Use use) {
+  static const json::json_pointer kPlaces[] = {json::json_pointer("/pbrMetallicRoughness/baseColorTexture"),
+                                               json::json_pointer("/emissiveTexture"),
+                                               json::json_pointer("/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture")};
+  forEachEntry(root, "/materials", [&](const json& material) {
     for (const auto& place : kPlaces) {
       if (material.contains(place)) use(material[place]);
     }
-  }
+  });
 }
 
 bool isCompressed(const json& view) {
@@ -182,8 +188,7 @@ std::span<const std::byte> Document::splitContainer(std::span<const std::byte> f
     fail("", "is truncated: its GLB header declares " + std::to_string(length) + " bytes, the file has " + std::to_string(file.size()) +
                  "; copy or export it again");
   }
-  if (length < file.size())
-    warnings.add(std::to_string(file.size() - length) + " bytes after the declared end of the file are ignored");
+  if (length < file.size()) warnings.add(std::to_string(file.size() - length) + " bytes after the declared end of the file are ignored");
   const uint64_t jsonBytes = readWord(file, 12);
   if (readWord(file, 16) != kJsonChunk) fail("byte 16", "the first GLB chunk is not JSON; export it again");
   if (length < 20 || jsonBytes > length - 20) fail("byte 12", "the JSON chunk is longer than the file; copy or export it again");
@@ -213,7 +218,8 @@ void Document::checkExtensions(const json& root) {
 }
 
 /// Makes of a legal file one that tinygltf loads, and one that it loads safely: it reads any file that a URI names, wants buffers of
-/// exactly the declared length, refuses index accessors without a view (Draco's have none), and points images at unchecked ranges.
+/// exactly the declared length, refuses index accessors without a view (Draco's have none) and lenses without all their numbers, and
+/// points images at unchecked ranges.
 void Document::adaptForTinygltf(json& root) {
   if (root.contains("animations")) warnings.add("animations are left out, the rest pose is used");
   root.erase("animations");
@@ -241,10 +247,12 @@ void Document::adaptForTinygltf(json& root) {
   adaptImages(root);
   noView_ = root["bufferViews"].size();
   root["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
-  if (!root.contains("accessors")) return;
-  for (json& accessor : root["accessors"]) {
-    if (!accessor.contains("bufferView")) accessor["bufferView"] = noView_;
-  }
+  forEachEntry(root, "/accessors", [&](json& accessor) { accessor.emplace("bufferView", noView_); });
+  forEachEntry(root, "/cameras", [](json& camera) {
+    json& lens = camera[camera["type"].get<std::string>()];
+    for (const char* key : {"yfov", "xmag", "ymag", "znear", "zfar"}) lens.emplace(key, 0.0);
+  });
+  forEachEntry(root, "/extensions/KHR_lights_punctual/lights", [](json& light) { light.emplace("spot", json::object()); });
 }
 
 /// Images that no material uses are not read.
@@ -266,7 +274,8 @@ void Document::adaptImages(json& root) {
       const uint64_t offset = view.value("byteOffset", uint64_t{0}), length = view["byteLength"].get<uint64_t>();
       const uint64_t size = bufferLengths_[view["buffer"].get<size_t>()];
       if (offset < size && length <= size - offset && length > 0 && !isCompressed(view)) continue;
-      fail(placeOf("images", i), "its bytes end beyond the buffer of bufferViews[" + std::to_string(index) + "]; copy or export the file again");
+      fail(placeOf("images", i),
+           "its bytes end beyond the buffer of bufferViews[" + std::to_string(index) + "]; copy or export the file again");
     }
     image.erase("bufferView");
     image["uri"] = placeOf("images", i);
@@ -310,7 +319,8 @@ std::optional<std::vector<unsigned char>> Document::readUri(const std::string& u
     // tinygltf knows seven kinds of data URI by name and stops at the first strange character without a word.
     const size_t end = uri.find_last_not_of('=') + 1;
     const auto isDigit = [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '/'; };
-    if ((end - comma - 1) % 4 == 1 || !std::all_of(uri.begin() + static_cast<std::ptrdiff_t>(comma) + 1, uri.begin() + static_cast<std::ptrdiff_t>(end), isDigit))
+    if ((end - comma - 1) % 4 == 1 ||
+        !std::all_of(uri.begin() + static_cast<std::ptrdiff_t>(comma) + 1, uri.begin() + static_cast<std::ptrdiff_t>(end), isDigit))
       return refuse("holds broken base64");
     std::vector<unsigned char> bytes;
     std::string mimeType;
@@ -335,7 +345,8 @@ void Document::readBuffer(size_t index, uint64_t byteLength, std::vector<unsigne
     source = uriForMessages(uri);
     std::string problem;
     auto bytes = readUri(uri, problem);
-    if (!bytes && problem.empty()) fail(place + ".uri", "external buffer " + source + " is missing; put it beside the .gltf, or export as .glb");
+    if (!bytes && problem.empty())
+      fail(place + ".uri", "external buffer " + source + " is missing; put it beside the .gltf, or export as .glb");
     if (!bytes) fail(place + ".uri", problem + "; correct it or export the file as .glb");
     out = std::move(*bytes);
   } else if (index == 0 && binaryChunk_) {

@@ -14,7 +14,6 @@
 
 #include "engine/scene/gltf_tinygltf.h"
 
-
 namespace radivox::scene::gltf {
 
 /// Numbers of one accessor, decoded.

@@ -59,9 +59,9 @@ std::vector<size_t> readParents(const Document& document) {
     for (size_t k = 0; k < nodes[i].children.size(); ++k) {
       const auto child = static_cast<size_t>(nodes[i].children[k]);
       if (parents[child] != kNoNode) {
-        document.fail(placeOf("nodes", i) + placeOf(".children", k),
-                      placeOf("nodes", child) + " is also a child of " + placeOf("nodes", parents[child]) +
-                          "; a node has one parent, duplicate it");
+        document.fail(
+            placeOf("nodes", i) + placeOf(".children", k),
+            placeOf("nodes", child) + " is also a child of " + placeOf("nodes", parents[child]) + "; a node has one parent, duplicate it");
       }
       parents[child] = i;
     }
@@ -95,8 +95,7 @@ std::vector<PlacedNode> placeNodes(const Document& document, const tinygltf::Sce
     for (size_t k = scene->nodes.size(); k-- > 0;) {
       const auto index = static_cast<size_t>(scene->nodes[k]);
       const std::string place = sceneName + placeOf(".nodes", k);
-      if (parents[index] != kNoNode)
-        document.fail(place, placeOf("nodes", index) + " is a child of another node; scenes list roots only");
+      if (parents[index] != kNoNode) document.fail(place, placeOf("nodes", index) + " is a child of another node; scenes list roots only");
       if (listed[index]) document.fail(place, placeOf("nodes", index) + " is listed twice; remove one");
       listed[index] = true;
       pushRoot(index);
@@ -184,7 +183,8 @@ CameraDescription readCamera(const Document& document, size_t index, const Place
   camera.orientation = orientationFrom(placed.forward, placed.up);
   if (source.type == "perspective") {
     const double yfov = source.perspective.yfov;
-    if (!(yfov > 1e-4 && yfov < 3.1)) document.fail(place + ".yfov", "is " + std::to_string(yfov) + " rad, should be above 0 and below 3.1");
+    if (!(yfov > 1e-4 && yfov < 3.1))
+      document.fail(place + ".yfov", "is " + std::to_string(yfov) + " rad, should be above 0 and below 3.1");
     camera.yfov = static_cast<float>(yfov);
     camera.znear = static_cast<float>(source.perspective.znear);
   } else {
@@ -255,31 +255,40 @@ Assembly reserveFor(const Document& document, const std::vector<PlacedNode>& nod
   return assembly;
 }
 
-/// The ways of a skin's joints to the world at rest; none when there is no skin or the scene lacks a joint.
-std::vector<glm::dmat4> readJoints(const Document& document, int skinIndex, const std::vector<PlacedNode>& nodes, Warnings& warnings) {
-  if (skinIndex < 0) return {};
-  const tinygltf::Skin& skin = document.model().skins[static_cast<size_t>(skinIndex)];
-  std::map<size_t, const glm::dmat4*> placed;
-  for (const PlacedNode& node : nodes) placed[node.node] = &node.toWorld;
-  const std::string place = placeOf("skins", static_cast<size_t>(skinIndex));
+/// The ways of a skin's joints to the world at rest; none when the scene lacks a joint.
+std::vector<glm::dmat4> readJoints(const Document& document, size_t index, const std::vector<const glm::dmat4*>& toWorld,
+                                   Warnings& warnings) {
+  const tinygltf::Skin& skin = document.model().skins[index];
+  const std::string place = placeOf("skins", index) + ".inverseBindMatrices";
   gltf::FloatData inverse;
-  if (skin.inverseBindMatrices >= 0) inverse = document.readFloats(skin.inverseBindMatrices, "MAT4", place + ".inverseBindMatrices");
-  if (inverse.components > 0 && inverse.count() < skin.joints.size()) {
-    document.fail(place + ".inverseBindMatrices", "has " + std::to_string(inverse.count()) + " matrices for " +
-                                                      std::to_string(skin.joints.size()) + " joints; export the file again");
+  if (skin.inverseBindMatrices >= 0) {
+    inverse = document.readFloats(skin.inverseBindMatrices, "MAT4", place);
+    if (inverse.count() < skin.joints.size()) {
+      document.fail(place, "has " + std::to_string(inverse.count()) + " matrices for " + std::to_string(skin.joints.size()) +
+                               " joints; export the file again");
+    }
   }
   std::vector<glm::dmat4> joints;
   for (size_t j = 0; j < skin.joints.size(); ++j) {
-    const auto node = placed.find(static_cast<size_t>(skin.joints[j]));
-    if (node == placed.end()) {
+    const glm::dmat4* node = toWorld[static_cast<size_t>(skin.joints[j])];
+    if (node == nullptr) {
       warnings.add("skins whose joints are not in the scene are left out, their meshes keep the bind pose");
       return {};
     }
     glm::dmat4 toJoint(1.0);
-    for (glm::length_t i = 0; inverse.components > 0 && i < 16; ++i) toJoint[i / 4][i % 4] = inverse.values[j * 16 + static_cast<size_t>(i)];
-    joints.push_back(*node->second * toJoint);
+    for (glm::length_t i = 0; inverse.components > 0 && i < 16; ++i)
+      toJoint[i / 4][i % 4] = inverse.values[j * 16 + static_cast<size_t>(i)];
+    joints.push_back(*node * toJoint);
   }
   return joints;
+}
+
+std::vector<std::vector<glm::dmat4>> readSkins(const Document& document, const std::vector<PlacedNode>& nodes, Warnings& warnings) {
+  std::vector<const glm::dmat4*> toWorld(document.model().nodes.size(), nullptr);
+  for (const PlacedNode& node : nodes) toWorld[node.node] = &node.toWorld;
+  std::vector<std::vector<glm::dmat4>> skins(document.model().skins.size());
+  for (size_t i = 0; i < skins.size(); ++i) skins[i] = readJoints(document, i, toWorld, warnings);
+  return skins;
 }
 
 Scene importChecked(const std::string& path) {
@@ -295,6 +304,8 @@ Scene importChecked(const std::string& path) {
 
   const std::vector<PlacedNode> placedNodes = placeNodes(document, gltfScene, warnings);
   Assembly assembly = reserveFor(document, placedNodes, meshes);
+  const auto skins = readSkins(document, placedNodes, warnings);
+  const std::vector<glm::dmat4> noJoints;
   std::vector<glm::dvec3> lightPositions, cameraPositions;
   const auto firstName = [](const std::string& name, const std::string& other, const std::string& last) {
     return !name.empty() ? name : !other.empty() ? other : last;
@@ -302,7 +313,7 @@ Scene importChecked(const std::string& path) {
   for (const PlacedNode& placedNode : placedNodes) {
     const tinygltf::Node& node = model.nodes[placedNode.node];
     if (node.mesh >= 0) {
-      const auto joints = readJoints(document, node.skin, placedNodes, warnings);
+      const auto& joints = node.skin < 0 ? noJoints : skins[static_cast<size_t>(node.skin)];
       for (const gltf::Primitive& primitive : meshes.mesh(node))
         gltf::appendInstance(document, primitive, placedNode.toWorld, joints, placeOf("nodes", placedNode.node), assembly, warnings);
     }

@@ -50,8 +50,8 @@ void appendInstance(const Document& document, const Primitive& primitive, const 
     world[i] = glm::dvec3(transformOf(i) * glm::dvec4(glm::dvec3(primitive.positions[i]), 1.0));
     const glm::dvec3 magnitude = glm::abs(world[i]);
     if (magnitude.x <= kMaxWorldCoordinate && magnitude.y <= kMaxWorldCoordinate && magnitude.z <= kMaxWorldCoordinate) continue;
-    document.fail(place, "its transform moves vertex " + std::to_string(i) + " of " + primitive.place +
-                             " beyond 1e15 m; correct the transform");
+    document.fail(place,
+                  "its transform moves vertex " + std::to_string(i) + " of " + primitive.place + " beyond 1e15 m; correct the transform");
   }
   std::vector<uint32_t> indices = primitive.indices;
   for (size_t i = 0; i < indices.size(); i += 3) {

@@ -43,7 +43,8 @@ const std::vector<Primitive>& MeshReader::mesh(const tinygltf::Node& node) {
 Primitive MeshReader::readPrimitive(const tinygltf::Primitive& source, const std::vector<double>& weights, const std::string& place) {
   Primitive out;
   out.place = place;
-  const auto material = static_cast<uint32_t>(source.material < 0 ? document_.model().materials.size() : static_cast<size_t>(source.material));
+  const auto material =
+      static_cast<uint32_t>(source.material < 0 ? document_.model().materials.size() : static_cast<size_t>(source.material));
   const int positions = attributeOf(source.attributes, "POSITION");
   if (positions < 0) {
     warnings_.add("primitives without POSITION are left out");
@@ -177,7 +178,8 @@ void MeshReader::readInfluences(const tinygltf::Primitive& source, Primitive& ou
     for (size_t i = 0; i < weights.values.size(); ++i) {
       const float joint = joints.values[i], weight = weights.values[i];
       if (!(weight > 0) || !std::isfinite(weight)) continue;
-      if (!(joint >= 0 && joint < 65536)) document_.fail(place + ".JOINTS_" + number, "names joint " + std::to_string(joint) + "; export the file again");
+      if (!(joint >= 0 && joint < 65536))
+        document_.fail(place + ".JOINTS_" + number, "names joint " + std::to_string(joint) + "; export the file again");
       out.influences.push_back({static_cast<uint32_t>(i / 4), static_cast<uint32_t>(joint), weight});
     }
   }

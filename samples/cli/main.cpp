@@ -103,7 +103,8 @@ int run(int argc, char** argv) {
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
   CLI::App* scene = app.add_subcommand("scene", "write a scene as .glb: a built-in one, or a file flattened to what is lit");
-  scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...], or a .gltf/.glb file")->type_name("");
+  scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...], or a .gltf/.glb file")
+      ->type_name("");
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");

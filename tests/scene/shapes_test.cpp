@@ -69,13 +69,11 @@ TEST_F(ShapesTest, SparseMorphTargets) {
   const uint8_t index = 2;
   const glm::vec3 offset(0, 1, 0);
   const size_t indices = file.addView(&index, 1), values = file.addView(&offset, 12);
-  file.json["accessors"].push_back({{"componentType", 5126},
-                                    {"type", "VEC3"},
-                                    {"count", 3},
-                                    {"sparse",
-                                     {{"count", 1},
-                                      {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
-                                      {"values", {{"bufferView", values}}}}}});
+  file.json["accessors"].push_back(
+      {{"componentType", 5126},
+       {"type", "VEC3"},
+       {"count", 3},
+       {"sparse", {{"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}}}});
   const size_t mesh = file.addMesh({{"attributes", {{"POSITION", positions}}}, {"targets", {{{"POSITION", 1}}}}});
   file.json["meshes"][mesh]["weights"] = {3};
   file.addNode({{"mesh", mesh}});
@@ -97,8 +95,7 @@ class SkinTest : public ShapesTest {
       return m;
     }();
     inverse_ = file_.addAccessor(std::vector<glm::mat4>{one, down}, 5126, "MAT4", 2);
-    mesh_ = file_.addMesh(
-        {{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
+    mesh_ = file_.addMesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
     file_.addNode({{"mesh", mesh_}, {"skin", 0}, {"translation", {500, 0, 0}}});
     file_.addNode({{"translation", {0, 0, 3}}, {"children", {2}}});
     file_.json["nodes"].push_back({{"translation", {0, 0, 10}}});
@@ -111,9 +108,9 @@ class SkinTest : public ShapesTest {
 TEST_F(SkinTest, JointsAtRestMoveTheVertices) {
   const Scene s = load(file_);
   ASSERT_EQ(s.triangleCount(), 1u);
-  expectNear(corner(s, 0, 0), {0, 0, 3});        // joint 0
-  expectNear(corner(s, 0, 1), {1, 0, 12});       // joint 1: 3 + 10 − 1
-  expectNear(corner(s, 0, 2), {0, 1, 7.5f});     // half and half
+  expectNear(corner(s, 0, 0), {0, 0, 3});     // joint 0
+  expectNear(corner(s, 0, 1), {1, 0, 12});    // joint 1: 3 + 10 − 1
+  expectNear(corner(s, 0, 2), {0, 1, 7.5f});  // half and half
   for (const auto& vertex : s.vertices) expectNear(vertex.normal, {0, 0, 1});
   EXPECT_EQ(allWarnings(s).find("skin"), std::string::npos) << allWarnings(s);
   file_.json["skins"][0].erase("inverseBindMatrices");
@@ -175,7 +172,8 @@ TEST_F(ColorTest, TrianglesOfOneColorAreExact) {
 }
 
 TEST_F(ColorTest, BytesAndAlpha) {
-  const std::vector<uint8_t> colors = {51, 0, 255, 102, 51, 0, 255, 102, 51, 0, 255, 102, 51, 0, 255, 102, 51, 0, 255, 102, 51, 0, 255, 102};
+  const std::vector<uint8_t> colors = {51, 0, 255, 102, 51, 0, 255, 102, 51, 0, 255, 102,
+                                       51, 0, 255, 102, 51, 0, 255, 102, 51, 0, 255, 102};
   const Scene s = loadColors(colors, 5121, "VEC4");
   EXPECT_EQ(s.triangleMaterials[0], s.triangleMaterials[1]);  // equal colours share a material
   expectNear(materialOf(s, 0).albedo, {0.1f, 0, 0.5f});
@@ -271,7 +269,8 @@ class MeshoptTest : public ShapesTest {
     const size_t view = file.addView(bytes.data(), bytes.size());
     json compressed = file.json["bufferViews"][view];
     compressed.update({{"count", count}, {"byteStride", stride}, {"mode", mode}, {"filter", filter}});
-    file.json["bufferViews"][view] = {{"buffer", 1}, {"byteLength", count * stride}, {"extensions", {{"EXT_meshopt_compression", compressed}}}};
+    file.json["bufferViews"][view] = {
+        {"buffer", 1}, {"byteLength", count * stride}, {"extensions", {{"EXT_meshopt_compression", compressed}}}};
   }
 };
 
