@@ -140,7 +140,7 @@ struct Document::Loader {
     std::string problem;
     if (auto bytes = document.readUri(document.imageUris_[index], problem)) *out = std::move(*bytes);
     if (!out->empty()) return true;
-    document.warnings.add(document.describeImage(index) + " " + (problem.empty() ? "is missing" : problem) +
+    document.warnings.add(document.describeImage(index) + " " + (problem.empty() ? "is missing or empty" : problem) +
                           ", its texture is left out; put it beside the .gltf, or export as .glb");
     return false;
   }
@@ -313,6 +313,7 @@ std::optional<std::vector<unsigned char>> Document::readUri(const std::string& u
     problem = why;
     return std::nullopt;
   };
+  if (uri.empty()) return refuse("has neither a uri nor a bufferView");
   if (isDataUri(uri)) {
     const size_t comma = uri.find(',');
     if (comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64")) return refuse("is a data URI that is not base64");
