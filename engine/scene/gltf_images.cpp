@@ -1,4 +1,5 @@
 // PNG and JPEG for glTF textures, and the one place where tinygltf is compiled.
+#include <algorithm>
 #include <climits>
 #include <fstream>  // tinygltf's writer
 
@@ -35,8 +36,26 @@
 
 namespace radivox::scene::gltf {
 
+namespace {
+
+/// stb takes memory for what a PNG's chunk claims to hold, up to 2 GiB, before it looks whether it is there.
+bool holdsItsChunks(std::span<const unsigned char> bytes) {
+  constexpr unsigned char kSignature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  if (bytes.size() < sizeof kSignature || !std::equal(std::begin(kSignature), std::end(kSignature), bytes.begin())) return true;
+  size_t at = sizeof kSignature;
+  while (at + 12 <= bytes.size()) {  // length, type, data, checksum
+    const size_t length = size_t{bytes[at]} << 24 | size_t{bytes[at + 1]} << 16 | size_t{bytes[at + 2]} << 8 | size_t{bytes[at + 3]};
+    if (length > bytes.size() - at - 12) return false;
+    if (bytes[at + 4] == 'I' && bytes[at + 5] == 'E') return true;  // IEND; what follows is not read
+    at += 12 + length;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::optional<TextureImage> decodeImage(std::span<const unsigned char> bytes) {
-  if (bytes.size() > INT_MAX) return std::nullopt;
+  if (bytes.size() > INT_MAX || !holdsItsChunks(bytes)) return std::nullopt;
   tinygltf::Image decoded;
   std::string ignored;
   if (!tinygltf::LoadImageData(&decoded, 0, &ignored, &ignored, 0, 0, bytes.data(), static_cast<int>(bytes.size()), nullptr))
