@@ -1,5 +1,6 @@
 // Scene → .glb: one mesh with a primitive for each material, so that what importGltf reads back is the same scene.
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "engine/error.h"
 #include "engine/image/image.h"

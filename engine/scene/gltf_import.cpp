@@ -1,4 +1,5 @@
 // glTF nodes → flattened scene: transforms, instances, lights, cameras. Files are read in gltf_document.cpp, meshes in gltf_mesh.cpp.
+// Indices and types in tinygltf's model have been checked (gltf_check.h); -1 and empty lists mean "not there".
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,7 +16,7 @@ namespace radivox::scene {
 namespace {
 
 using gltf::Document;
-using gltf::Value;
+using gltf::placeOf;
 using gltf::Warnings;
 
 constexpr size_t kNoNode = static_cast<size_t>(-1);
@@ -25,18 +26,17 @@ struct PlacedNode {
   glm::dmat4 toWorld;
 };
 
-glm::dmat4 localTransform(const Value& node, Warnings& warnings) {
-  if (node.has("matrix")) {
-    const auto m = node.numbersOr<16>("matrix", {});
+glm::dmat4 localTransform(const Document& document, size_t index, Warnings& warnings) {
+  const tinygltf::Node& node = document.model().nodes[index];
+  if (!node.matrix.empty()) {
     glm::dmat4 out(1.0);
-    for (glm::length_t i = 0; i < 16; ++i) out[i / 4][i % 4] = m[static_cast<size_t>(i)];
+    for (glm::length_t i = 0; i < 16; ++i) out[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
     if (out[0][3] != 0 || out[1][3] != 0 || out[2][3] != 0 || out[3][3] != 1)
-      node.at("matrix").fail("is no affine transform (its last row is not 0 0 0 1); correct it");
+      document.fail(placeOf("nodes", index) + ".matrix", "is no affine transform (its last row is not 0 0 0 1); correct it");
     return out;
   }
-  const auto t = node.numbersOr<3>("translation", {0, 0, 0});
-  const auto r = node.numbersOr<4>("rotation", {0, 0, 0, 1});
-  const auto s = node.numbersOr<3>("scale", {1, 1, 1});
+  const auto valuesOr = [](const std::vector<double>& values, std::vector<double> fallback) { return values.empty() ? fallback : values; };
+  const auto t = valuesOr(node.translation, {0, 0, 0}), r = valuesOr(node.rotation, {0, 0, 0, 1}), s = valuesOr(node.scale, {1, 1, 1});
   glm::dquat rotation(r[3], r[0], r[1], r[2]);
   if (glm::length(rotation) > 1e-12) {
     rotation = glm::normalize(rotation);
@@ -52,20 +52,18 @@ glm::dmat4 localTransform(const Value& node, Warnings& warnings) {
 
 /// Parent of each node. Throws when a node has two, or is its own ancestor.
 std::vector<size_t> readParents(const Document& document) {
-  const size_t count = document.count("nodes");
+  const auto& nodes = document.model().nodes;
+  const size_t count = nodes.size();
   std::vector<size_t> parents(count, kNoNode);
   for (size_t i = 0; i < count; ++i) {
-    const auto children = document.entry("nodes", i).findArray("children");
-    for (size_t k = 0; children && k < children->size(); ++k) {
-      const Value child = (*children)[k];
-      const uint64_t index = child.whole();
-      if (index >= count)
-        child.fail("is " + std::to_string(index) + ", but the file has " + std::to_string(count) + " nodes; export the file again");
-      if (parents[index] != kNoNode) {
-        child.fail("nodes[" + std::to_string(index) + "] is also a child of nodes[" + std::to_string(parents[index]) +
-                   "]; a node has one parent, duplicate it");
+    for (size_t k = 0; k < nodes[i].children.size(); ++k) {
+      const auto child = static_cast<size_t>(nodes[i].children[k]);
+      if (parents[child] != kNoNode) {
+        document.fail(
+            placeOf("nodes", i) + placeOf(".children", k),
+            placeOf("nodes", child) + " is also a child of " + placeOf("nodes", parents[child]) + "; a node has one parent, duplicate it");
       }
-      parents[index] = i;
+      parents[child] = i;
     }
   }
   // Chains of parents that never end are cycles: 0 unseen, 1 on the chain being walked, 2 known to end.
@@ -73,35 +71,32 @@ std::vector<size_t> readParents(const Document& document) {
   for (size_t i = 0; i < count; ++i) {
     size_t at = i;
     for (; at != kNoNode && state[at] == 0; at = parents[at]) state[at] = 1;
-    if (at != kNoNode && state[at] == 1) document.entry("nodes", at).fail("is its own ancestor; break the cycle of children");
+    if (at != kNoNode && state[at] == 1) document.fail(placeOf("nodes", at), "is its own ancestor; break the cycle of children");
     for (at = i; at != kNoNode && state[at] == 1; at = parents[at]) state[at] = 2;
   }
   return parents;
 }
 
 /// The glTF scene to show: the default one, the only one, or nothing (then all roots).
-std::optional<Value> findScene(const Document& document) {
-  const size_t count = document.count("scenes");
-  if (const auto index = document.root().indexOr("scene", count, "scenes")) return document.entry("scenes", *index);
-  if (count == 1) return document.entry("scenes", 0);
-  return std::nullopt;
+const tinygltf::Scene* findScene(const Document& document) {
+  const tinygltf::Model& model = document.model();
+  if (model.defaultScene >= 0) return &model.scenes[static_cast<size_t>(model.defaultScene)];
+  return model.scenes.size() == 1 ? &model.scenes[0] : nullptr;
 }
 
 /// Nodes of the scene with their world transforms, parents before children, in file order.
-std::vector<PlacedNode> placeNodes(const Document& document, const std::optional<Value>& scene, Warnings& warnings) {
+std::vector<PlacedNode> placeNodes(const Document& document, const tinygltf::Scene* scene, Warnings& warnings) {
   const std::vector<size_t> parents = readParents(document);
   std::vector<PlacedNode> stack, placed;
   const auto pushRoot = [&](size_t index) { stack.push_back({index, glm::dmat4(1.0)}); };
-  if (scene) {
+  if (scene != nullptr) {
     std::vector<bool> listed(parents.size(), false);
-    const auto nodes = scene->findArray("nodes");
-    for (size_t k = nodes ? nodes->size() : 0; k-- > 0;) {
-      const Value root = (*nodes)[k];
-      const uint64_t index = root.whole();
-      if (index >= parents.size())
-        root.fail("is " + std::to_string(index) + ", but the file has " + std::to_string(parents.size()) + " nodes; export the file again");
-      if (parents[index] != kNoNode) root.fail("nodes[" + std::to_string(index) + "] is a child of another node; scenes list roots only");
-      if (listed[index]) root.fail("nodes[" + std::to_string(index) + "] is listed twice; remove one");
+    const std::string sceneName = placeOf("scenes", static_cast<size_t>(scene - document.model().scenes.data()));
+    for (size_t k = scene->nodes.size(); k-- > 0;) {
+      const auto index = static_cast<size_t>(scene->nodes[k]);
+      const std::string place = sceneName + placeOf(".nodes", k);
+      if (parents[index] != kNoNode) document.fail(place, placeOf("nodes", index) + " is a child of another node; scenes list roots only");
+      if (listed[index]) document.fail(place, placeOf("nodes", index) + " is listed twice; remove one");
       listed[index] = true;
       pushRoot(index);
     }
@@ -113,16 +108,16 @@ std::vector<PlacedNode> placeNodes(const Document& document, const std::optional
   while (!stack.empty()) {
     PlacedNode current = stack.back();
     stack.pop_back();
-    const Value node = document.entry("nodes", current.node);
-    current.toWorld = current.toWorld * localTransform(node, warnings);
+    current.toWorld = current.toWorld * localTransform(document, current.node, warnings);
     for (glm::length_t c = 0; c < 4; ++c) {
       for (glm::length_t r = 0; r < 4; ++r) {
-        if (!std::isfinite(current.toWorld[c][r])) node.fail("its world transform overflows; correct the transforms of its ancestors");
+        if (!std::isfinite(current.toWorld[c][r]))
+          document.fail(placeOf("nodes", current.node), "its world transform overflows; correct the transforms of its ancestors");
       }
     }
     placed.push_back(current);
-    const auto children = node.findArray("children");
-    for (size_t k = children ? children->size() : 0; k-- > 0;) stack.push_back({(*children)[k].whole(), current.toWorld});
+    const auto& children = document.model().nodes[current.node].children;
+    for (size_t k = children.size(); k-- > 0;) stack.push_back({static_cast<size_t>(children[k]), current.toWorld});
   }
   return placed;
 }
@@ -133,10 +128,11 @@ struct Placed {
   glm::dvec3 forward, up;
 };
 
-Placed placeAlongMinusZ(const glm::dmat4& m, const Value& node, Warnings& warnings) {
+Placed placeAlongMinusZ(const Document& document, const PlacedNode& node, Warnings& warnings) {
+  const glm::dmat4& m = node.toWorld;
   Placed out{glm::dvec3(m[3]), -glm::dvec3(m[2]), glm::dvec3(m[1])};
   for (glm::length_t i = 0; i < 3; ++i) {
-    if (std::abs(out.position[i]) > 1e15) node.fail("it stands beyond 1e15 m; correct its transform");
+    if (std::abs(out.position[i]) > 1e15) document.fail(placeOf("nodes", node.node), "it stands beyond 1e15 m; correct its transform");
   }
   if (!(glm::length(out.forward) > 0)) {
     warnings.add("lights and cameras scaled to nothing look along -z");
@@ -148,37 +144,24 @@ Placed placeAlongMinusZ(const glm::dmat4& m, const Value& node, Warnings& warnin
   return out;
 }
 
-std::optional<PunctualLight> readLight(const Value& json, const Placed& placed, Warnings& warnings) {
+std::optional<PunctualLight> readLight(const Document& document, size_t index, const Placed& placed, Warnings& warnings) {
+  const tinygltf::Light& source = document.model().lights[index];
+  const std::string place = placeOf("extensions.KHR_lights_punctual.lights", index);
   PunctualLight light;
-  const std::string type = json.at("type").text();
-  if (type == "directional")
-    light.type = shared::kLightDirectional;
-  else if (type == "point")
-    light.type = shared::kLightPoint;
-  else if (type == "spot")
-    light.type = shared::kLightSpot;
-  else
-    json.at("type").fail("is \"" + type + "\", should be directional, point or spot");
-  const auto color = json.numbersOr<3>("color", {1, 1, 1});
-  const double intensity = json.numberOr("intensity", 1);
+  light.type = source.type == "point" ? shared::kLightPoint : source.type == "spot" ? shared::kLightSpot : shared::kLightDirectional;
   for (glm::length_t i = 0; i < 3; ++i) {
-    const double value = color[static_cast<size_t>(i)] * intensity;
-    if (value < 0) json.fail("its colour or intensity is negative; correct it");
-    if (value > 1e18) json.fail("its intensity is beyond 1e18; correct it");
+    const double value = (source.color.empty() ? 1.0 : source.color[static_cast<size_t>(i)]) * source.intensity;
+    if (value < 0) document.fail(place, "its colour or intensity is negative; correct it");
+    if (value > 1e18) document.fail(place, "its intensity is beyond 1e18; correct it");
     light.intensity[i] = static_cast<float>(value);
   }
-  const double range = json.numberOr("range", 0);
-  if (range < 0 || (json.has("range") && range == 0)) json.at("range").fail("should be above 0; remove it for no limit");
-  light.range = static_cast<float>(range);
+  light.range = static_cast<float>(source.range);
   light.direction = glm::vec3(placed.forward);
   if (light.type == shared::kLightSpot) {
-    double inner = 0, outer = glm::quarter_pi<double>();
-    if (const auto spot = json.findObject("spot")) {
-      inner = spot->numberOr("innerConeAngle", 0);
-      outer = spot->numberOr("outerConeAngle", outer);
-    }
+    double inner = source.spot.innerConeAngle;
+    const double outer = source.spot.outerConeAngle;
     if (!(outer > 0) || outer > glm::half_pi<double>() * 1.0001 || inner < 0)
-      json.fail("its cone angles should be 0 <= inner < outer <= pi/2; correct them");
+      document.fail(place, "its cone angles should be 0 <= inner < outer <= pi/2; correct them");
     if (inner >= outer) {
       warnings.add("spot lights whose inner cone is not inside the outer one get a hard edge");
       inner = outer * 0.999;
@@ -193,25 +176,23 @@ std::optional<PunctualLight> readLight(const Value& json, const Placed& placed, 
   return light;
 }
 
-CameraDescription readCamera(const Value& json, const Placed& placed) {
+CameraDescription readCamera(const Document& document, size_t index, const Placed& placed) {
+  const tinygltf::Camera& source = document.model().cameras[index];
+  const std::string place = placeOf("cameras", index) + "." + source.type;
   CameraDescription camera;
   camera.orientation = orientationFrom(placed.forward, placed.up);
-  const std::string type = json.at("type").text();
-  if (type == "perspective") {
-    const Value perspective = json.at("perspective");
-    const double yfov = perspective.at("yfov").number();
-    if (!(yfov > 1e-4 && yfov < 3.1)) perspective.at("yfov").fail("is " + std::to_string(yfov) + " rad, should be above 0 and below 3.1");
+  if (source.type == "perspective") {
+    const double yfov = source.perspective.yfov;
+    if (!(yfov > 1e-4 && yfov < 3.1))
+      document.fail(place + ".yfov", "is " + std::to_string(yfov) + " rad, should be above 0 and below 3.1");
     camera.yfov = static_cast<float>(yfov);
-    camera.znear = static_cast<float>(perspective.numberOr("znear", 0));
-  } else if (type == "orthographic") {
-    const Value orthographic = json.at("orthographic");
-    const double ymag = orthographic.at("ymag").number();
-    if (!(std::abs(ymag) > 0)) orthographic.at("ymag").fail("should not be 0");
-    camera.orthographic = true;
-    camera.ymag = static_cast<float>(std::abs(ymag));
-    camera.znear = static_cast<float>(orthographic.numberOr("znear", 0));
+    camera.znear = static_cast<float>(source.perspective.znear);
   } else {
-    json.at("type").fail("is \"" + type + "\", should be perspective or orthographic");
+    const double ymag = std::abs(source.orthographic.ymag);
+    if (!(ymag > 0)) document.fail(place + ".ymag", "should not be 0");
+    camera.orthographic = true;
+    camera.ymag = static_cast<float>(ymag);
+    camera.znear = static_cast<float>(source.orthographic.znear);
   }
   return camera;
 }
@@ -227,24 +208,23 @@ void fitDepthRange(CameraDescription& camera, const Traits& traits) {
   camera.zfar = camera.znear + static_cast<float>(glm::length(glm::dvec3(centre) - glm::dvec3(camera.position)) + diagonal);
 }
 
-void readSky(const std::optional<Value>& gltfScene, Scene& scene) {
-  if (!gltfScene) return;
-  const auto extras = gltfScene->find("extras");
-  if (!extras || !extras->json().is_object()) return;  // extras may be anything
-  const auto ours = extras->find("radivox");
-  if (!ours) return;
-  const auto sky = ours->numbersOr<3>("skyRadiance", {0, 0, 0});
+/// extras may be anything, so the types are looked at here.
+void readSky(const Document& document, const tinygltf::Scene* gltfScene, Scene& scene) {
+  if (gltfScene == nullptr || !gltfScene->extras.Has("radivox") || !gltfScene->extras.Get("radivox").Has("skyRadiance")) return;
+  const tinygltf::Value& sky = gltfScene->extras.Get("radivox").Get("skyRadiance");
   for (glm::length_t i = 0; i < 3; ++i) {
-    if (sky[static_cast<size_t>(i)] < 0) ours->at("skyRadiance").fail("is negative; correct it");
-    scene.skyRadiance[i] = static_cast<float>(sky[static_cast<size_t>(i)]);
+    if (sky.ArrayLen() != 3 || !sky.Get(i).IsNumber() || sky.Get(i).GetNumberAsDouble() < 0) {
+      document.fail(placeOf("scenes", static_cast<size_t>(gltfScene - document.model().scenes.data())) + ".extras.radivox.skyRadiance",
+                    "should be three numbers, 0 or more; correct it");
+    }
+    scene.skyRadiance[i] = static_cast<float>(sky.Get(i).GetNumberAsDouble());
   }
 }
 
 bool primitivesLackMaterial(const Document& document) {
-  for (size_t m = 0; m < document.count("meshes"); ++m) {
-    const Value primitives = document.entry("meshes", m).at("primitives");
-    for (size_t p = 0; p < primitives.size(); ++p) {
-      if (!primitives[p].has("material")) return true;
+  for (const tinygltf::Mesh& mesh : document.model().meshes) {
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      if (primitive.material < 0) return true;
     }
   }
   return false;
@@ -254,16 +234,15 @@ bool primitivesLackMaterial(const Document& document) {
 Assembly reserveFor(const Document& document, const std::vector<PlacedNode>& nodes, gltf::MeshReader& meshes) {
   uint64_t vertexTotal = 0, indexTotal = 0;
   for (const PlacedNode& placed : nodes) {
-    const Value node = document.entry("nodes", placed.node);
-    const auto mesh = node.indexOr("mesh", document.count("meshes"), "meshes");
-    if (!mesh) continue;
-    for (const gltf::Primitive& primitive : meshes.mesh(*mesh)) {
+    const tinygltf::Node& node = document.model().nodes[placed.node];
+    if (node.mesh < 0) continue;
+    for (const gltf::Primitive& primitive : meshes.mesh(node)) {
       if (primitive.indices.empty()) continue;
       vertexTotal += primitive.normals.empty() ? primitive.indices.size() : primitive.positions.size();
       indexTotal += primitive.indices.size();
     }
     if (vertexTotal > 0xffffffffull || indexTotal > 0xffffffffull) {
-      throw Error(ErrorCode::OutOfMemory, document.path() + ": " + node.place() + ": with this instance the scene has " +
+      throw Error(ErrorCode::OutOfMemory, document.path() + ": " + placeOf("nodes", placed.node) + ": with this instance the scene has " +
                                               std::to_string(indexTotal / 3) +
                                               " triangles, more than 32-bit indices hold; simplify it or remove instances");
     }
@@ -276,48 +255,85 @@ Assembly reserveFor(const Document& document, const std::vector<PlacedNode>& nod
   return assembly;
 }
 
+/// The ways of a skin's joints to the world at rest; none when the scene lacks a joint.
+std::vector<glm::dmat4> readJoints(const Document& document, size_t index, const std::vector<const glm::dmat4*>& toWorld,
+                                   Warnings& warnings) {
+  const tinygltf::Skin& skin = document.model().skins[index];
+  const std::string place = placeOf("skins", index) + ".inverseBindMatrices";
+  gltf::FloatData inverse;
+  if (skin.inverseBindMatrices >= 0) {
+    inverse = document.readFloats(skin.inverseBindMatrices, "MAT4", place);
+    if (inverse.count() < skin.joints.size()) {
+      document.fail(place, "has " + std::to_string(inverse.count()) + " matrices for " + std::to_string(skin.joints.size()) +
+                               " joints; export the file again");
+    }
+  }
+  std::vector<glm::dmat4> joints;
+  for (size_t j = 0; j < skin.joints.size(); ++j) {
+    const glm::dmat4* node = toWorld[static_cast<size_t>(skin.joints[j])];
+    if (node == nullptr) {
+      warnings.add("skins whose joints are not in the scene are left out, their meshes keep the bind pose");
+      return {};
+    }
+    glm::dmat4 toJoint(1.0);
+    for (glm::length_t i = 0; inverse.components > 0 && i < 16; ++i)
+      toJoint[i / 4][i % 4] = inverse.values[j * 16 + static_cast<size_t>(i)];
+    joints.push_back(*node * toJoint);
+  }
+  return joints;
+}
+
+std::vector<std::vector<glm::dmat4>> readSkins(const Document& document, const std::vector<PlacedNode>& nodes, Warnings& warnings) {
+  std::vector<const glm::dmat4*> toWorld(document.model().nodes.size(), nullptr);
+  for (const PlacedNode& node : nodes) toWorld[node.node] = &node.toWorld;
+  std::vector<std::vector<glm::dmat4>> skins(document.model().skins.size());
+  for (size_t i = 0; i < skins.size(); ++i) skins[i] = readJoints(document, i, toWorld, warnings);
+  return skins;
+}
+
 Scene importChecked(const std::string& path) {
   const Document document(path);
+  const tinygltf::Model& model = document.model();
   Scene scene;
   scene.name = path;
-  Warnings warnings;
+  Warnings warnings = document.warnings;
   const auto coordinates = gltf::readMaterials(document, primitivesLackMaterial(document), scene, warnings);
-  gltf::MeshReader meshes(document, coordinates, warnings);
-  const auto gltfScene = findScene(document);
-  readSky(gltfScene, scene);
-
-  const auto lightList = document.root().findExtension("KHR_lights_punctual");
-  const auto lights = lightList ? lightList->findArray("lights") : std::nullopt;
-  if (document.count("skins") > 0) warnings.add("skins are left out, skinned meshes keep their bind pose");
-  if (document.count("animations") > 0) warnings.add("animations are left out");
+  gltf::MeshReader meshes(document, coordinates, scene, warnings);
+  const tinygltf::Scene* gltfScene = findScene(document);
+  readSky(document, gltfScene, scene);
 
   const std::vector<PlacedNode> placedNodes = placeNodes(document, gltfScene, warnings);
   Assembly assembly = reserveFor(document, placedNodes, meshes);
+  const auto skins = readSkins(document, placedNodes, warnings);
+  const std::vector<glm::dmat4> noJoints;
   std::vector<glm::dvec3> lightPositions, cameraPositions;
+  const auto firstName = [](const std::string& name, const std::string& other, const std::string& last) {
+    return !name.empty() ? name : !other.empty() ? other : last;
+  };
   for (const PlacedNode& placedNode : placedNodes) {
-    const Value node = document.entry("nodes", placedNode.node);
-    if (const auto mesh = node.indexOr("mesh", document.count("meshes"), "meshes")) {
-      for (const gltf::Primitive& primitive : meshes.mesh(*mesh))
-        gltf::appendInstance(primitive, placedNode.toWorld, node, assembly, warnings);
+    const tinygltf::Node& node = model.nodes[placedNode.node];
+    if (node.mesh >= 0) {
+      const auto& joints = node.skin < 0 ? noJoints : skins[static_cast<size_t>(node.skin)];
+      for (const gltf::Primitive& primitive : meshes.mesh(node))
+        gltf::appendInstance(document, primitive, placedNode.toWorld, joints, placeOf("nodes", placedNode.node), assembly, warnings);
     }
-    if (const auto extension = node.findExtension("KHR_lights_punctual")) {
-      const size_t index = extension->index("light", lights ? lights->size() : 0, "lights");
-      const Placed placed = placeAlongMinusZ(placedNode.toWorld, node, warnings);
-      if (auto light = readLight((*lights)[index], placed, warnings)) {
-        light->name = node.textOr("name", (*lights)[index].textOr("name", "light " + std::to_string(scene.lights.size())));
+    if (const auto* extension = gltf::findExtension(node.extensions, "KHR_lights_punctual")) {
+      const auto index = static_cast<size_t>(extension->Get("light").GetNumberAsInt());
+      const Placed placed = placeAlongMinusZ(document, placedNode, warnings);
+      if (auto light = readLight(document, index, placed, warnings)) {
+        light->name = firstName(node.name, model.lights[index].name, "light " + std::to_string(scene.lights.size()));
         scene.lights.push_back(*light);
         lightPositions.push_back(placed.position);
       }
     }
-    if (const auto index = node.indexOr("camera", document.count("cameras"), "cameras")) {
-      const Value json = document.entry("cameras", *index);
-      const Placed placed = placeAlongMinusZ(placedNode.toWorld, node, warnings);
-      scene.cameras.push_back(readCamera(json, placed));
-      scene.cameras.back().name = node.textOr("name", json.textOr("name", "camera " + std::to_string(scene.cameras.size() - 1)));
+    if (node.camera >= 0) {
+      const Placed placed = placeAlongMinusZ(document, placedNode, warnings);
+      const auto index = static_cast<size_t>(node.camera);
+      scene.cameras.push_back(readCamera(document, index, placed));
+      scene.cameras.back().name = firstName(node.name, model.cameras[index].name, "camera " + std::to_string(scene.cameras.size() - 1));
       cameraPositions.push_back(placed.position);
     }
   }
-  scene.warnings = document.warnings;
   warnings.appendTo(scene.warnings);
   finishGeometry(std::move(assembly), scene);
   for (size_t i = 0; i < scene.lights.size(); ++i) scene.lights[i].position = glm::vec3(lightPositions[i] - scene.origin);

@@ -58,9 +58,12 @@ int runScene(const Options& options) {
     throw Error(ErrorCode::BadInput, "--out '" + path + "': unknown kind of file; end the name in .glb");
   }
   image::checkWritable(path);
-  const std::string prefix = "builtin:";
-  const std::string name = options.scene.rfind(prefix, 0) == 0 ? options.scene.substr(prefix.size()) : options.scene;
-  scene::exportGlb(scene::loadScene(prefix + name), path);
+  // A name alone is a built-in scene; files are written anew: flattened, with what was left out said.
+  const std::string extension = std::filesystem::path(options.scene).extension();
+  const bool isNamed = options.scene.rfind("builtin:", 0) != 0 && extension != ".gltf" && extension != ".glb";
+  const scene::Scene scene = scene::loadScene(isNamed ? "builtin:" + options.scene : options.scene);
+  for (const std::string& warning : scene.warnings) std::cerr << "radivox: warning: " << warning << "\n";
+  scene::exportGlb(scene, path);
   return 0;
 }
 

@@ -102,8 +102,9 @@ int run(int argc, char** argv) {
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
-  CLI::App* scene = app.add_subcommand("scene", "write a built-in scene as .glb");
-  scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...]")->type_name("");
+  CLI::App* scene = app.add_subcommand("scene", "write a scene as .glb: a built-in one, or a file flattened to what is lit");
+  scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...], or a .gltf/.glb file")
+      ->type_name("");
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");

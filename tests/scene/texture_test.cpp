@@ -222,6 +222,12 @@ TEST_F(TextureImportTest, MissingAndBrokenImagesAreLeftOut) {
   EXPECT_EQ(s.materials[0].baseTexture, shared::kNoTexture);
   EXPECT_TRUE(hasWarning(s, "no PNG or JPEG"));
 
+  TinyGltf claims = makeFile({{"index", 0}});  // a chunk that claims to hold 2 GiB
+  png = makePng(4, 4, std::vector<uint8_t>(64, 77));
+  png[33] = 0x7f;
+  addImage(claims, png);
+  EXPECT_TRUE(hasWarning(load(claims), "no PNG or JPEG"));
+
   TinyGltf foreign = makeFile({{"index", 0}});
   foreign.json["textures"] = json::array({{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}});
   s = load(foreign);
