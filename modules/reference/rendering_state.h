@@ -1,0 +1,27 @@
+// The state of a Rendering. Internal to modules/reference.
+#pragma once
+
+#include "modules/reference/accumulator.h"
+#include "modules/reference/path_tracer.h"
+
+namespace radivox::reference {
+
+/// Settings::samplesPerPass as it will be. Throws BadInput.
+uint32_t choosePassSize(uint32_t asked, uint32_t spp);
+
+struct Rendering::Impl {
+  const PathTracer& tracer;
+  scene::CameraDescription camera;
+  Settings settings;
+  uint32_t passes = 0;
+  double seconds = 0;
+  bool reached = false;  ///< the target error
+  std::vector<PixelMoments> pixels;
+  std::vector<Channels> pass;  ///< the pass under way, so that one given up leaves no trace
+
+  uint32_t passesOf(uint32_t half) const;
+  Estimate estimate(size_t aov, uint32_t firstHalf, uint32_t endHalf) const;
+  Images collect(uint32_t firstHalf, uint32_t endHalf) const;
+};
+
+}  // namespace radivox::reference
