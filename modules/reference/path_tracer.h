@@ -116,7 +116,7 @@ class PathTracer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A picture in the making: for snapshots (error against time from one run), checkpoints and halves. 288 bytes a pixel.
+/// A picture in the making: for snapshots (error against time from one run), checkpoints and halves. 360 bytes a pixel.
 class Rendering {
  public:
   /// `tracer` must outlive it. Throws BadInput (settings), OutOfMemory.

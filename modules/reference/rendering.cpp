@@ -7,7 +7,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <mutex>
 #include <new>
@@ -168,7 +167,7 @@ bool Rendering::advance(const Callbacks& callbacks) {
   for (size_t i = 0; i < impl_->pixels.size(); ++i) impl_->pixels[i].half[half].add(impl_->pass[i], count);
   ++impl_->passes;
   impl_->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (settings.targetError > 0) impl_->reached = relativeError(impl_->estimate(0, 0, 2)) <= settings.targetError;
+  impl_->checkTarget();
   return true;
 }
 
@@ -188,6 +187,10 @@ Images Rendering::half(uint32_t index) const {
   if (index > 1) throw Error(ErrorCode::BadInput, "half " + std::to_string(index) + ": there are 0 and 1");
   if (impl_->passes < 2) throw Error(ErrorCode::BadInput, "halves need two passes; give more samples a pixel, or fewer a pass");
   return impl_->collect(index, index + 1);
+}
+
+void Rendering::Impl::checkTarget() {
+  reached = settings.targetError > 0 && passes >= 2 && relativeError(estimate(0, 0, 2)) <= settings.targetError;
 }
 
 uint32_t Rendering::Impl::passesOf(uint32_t half) const { return (passes + 1 - half) / 2; }

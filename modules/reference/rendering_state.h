@@ -19,6 +19,7 @@ struct Rendering::Impl {
   std::vector<PixelMoments> pixels;
   std::vector<Channels> pass;  ///< the pass under way, so that one given up leaves no trace
 
+  void checkTarget();
   uint32_t passesOf(uint32_t half) const;
   Estimate estimate(size_t aov, uint32_t firstHalf, uint32_t endHalf) const;
   Images collect(uint32_t firstHalf, uint32_t endHalf) const;
