@@ -88,12 +88,14 @@ void Rendering::resume(const std::string& state, const std::string& source) {
     refuse("bounces", print(header.bounces), print(settings.bounces));
   }
   compare("seed", header.seed, settings.seed);
-  compare("samplesPerPass", header.samplesPerPass, settings.samplesPerPass);
+  if (!impl_->choosesPassSize) compare("samplesPerPass", header.samplesPerPass, settings.samplesPerPass);
   const size_t pixelBytes = impl_->pixels.size() * sizeof(PixelMoments);
   const char* pixels = state.data() + magicBytes + sizeof(header);
-  if (state.size() != magicBytes + sizeof(header) + pixelBytes || hashBytes(pixels, pixelBytes) != header.content)
+  if (state.size() != magicBytes + sizeof(header) + pixelBytes || hashBytes(pixels, pixelBytes) != header.content ||
+      header.samplesPerPass == 0)
     throw Error(ErrorCode::BadInput, source + ": damaged; begin anew without it");
   std::memcpy(impl_->pixels.data(), pixels, pixelBytes);
+  impl_->settings.samplesPerPass = header.samplesPerPass;
   impl_->passes = header.passes;
   impl_->seconds = header.seconds;
   impl_->checkTarget();

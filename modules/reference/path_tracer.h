@@ -136,8 +136,9 @@ class Rendering {
   /// Half 0 or 1: the even or the odd passes, independent of each other. Throws BadInput before there are two passes.
   Images half(uint32_t index) const;
 
-  /// The whole state. resume() refuses the state of another scene, camera, size, number of bounces, seed or samplesPerPass with
-  /// BadInput naming `source`; spp, target and time limit may differ. A resumed rendering goes on as if it had never stopped, bit for bit.
+  /// The whole state. resume() refuses the state of another scene, camera, size, number of bounces, seed or (where asked for)
+  /// samplesPerPass with BadInput naming `source`; spp, target and time limit may differ. A resumed rendering goes on as if it had never
+  /// stopped, bit for bit; a samplesPerPass of 0 takes that of the state.
   std::string checkpoint() const;
   void resume(const std::string& state, const std::string& source);
 

@@ -109,6 +109,7 @@ Rendering::Rendering(const PathTracer& tracer, const scene::CameraDescription& c
   if (settings.width == 0 || settings.height == 0)
     throw Error(ErrorCode::BadInput, "the picture has no pixels; give a size of at least 1x1");
   if (settings.spp == 0) throw Error(ErrorCode::BadInput, "0 samples a pixel; give at least 1");
+  impl_->choosesPassSize = settings.samplesPerPass == 0;
   impl_->settings.samplesPerPass = choosePassSize(settings.samplesPerPass, settings.spp);
   const size_t pixelCount = size_t{settings.width} * settings.height;
   try {

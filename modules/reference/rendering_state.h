@@ -12,7 +12,8 @@ uint32_t choosePassSize(uint32_t asked, uint32_t spp);
 struct Rendering::Impl {
   const PathTracer& tracer;
   scene::CameraDescription camera;
-  Settings settings;
+  Settings settings;  ///< samplesPerPass as chosen
+  bool choosesPassSize = false;
   uint32_t passes = 0;
   double seconds = 0;
   bool reached = false;  ///< the target error

@@ -60,6 +60,32 @@ void addPlanOptions(CLI::App* command, Options& options) {
   addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
 }
 
+void addReferenceOptions(CLI::App* command, Options& options, ReferenceOptions& reference) {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
+  command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) every one")
+      ->type_name("N|all");
+  command->add_option("--spp", reference.spp, "most samples a pixel, or a point with --probe (default: 64)")->type_name("N");
+  command->add_option("--seed", reference.seed, "another seed is another, independent picture (default: 0)")->type_name("N");
+  addRepeated(command, "--out", options.outputs, "picture to write; may be repeated. With --probe: FILE.csv", "FILE.exr|.png");
+  command->add_option("--aov", options.aovs, "layers to write, each with its variance (default: all six)")->type_name("NAME[,NAME...]");
+  command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
+  command->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
+  command->add_option("--target-error", reference.targetError, "stop when color's expected relative error is at most X")->type_name("X");
+  command->add_option("--time-limit", reference.timeLimit, "begin no pass that would end later")->type_name("SECONDS");
+  command->add_option("--pass", reference.samplesPerPass, "samples a pixel that are stratified together (default: by --spp, at most 16)")
+      ->type_name("N");
+  command->add_flag("--halves", reference.halves, "also write FILE_a and FILE_b, from even and odd passes: independent of each other");
+  command->add_option("--checkpoint", reference.checkpoint, "file to keep the state in: each minute, when interrupted, at the end")
+      ->type_name("FILE");
+  command->add_option("--resume", reference.resume, "go on from such a file")->type_name("FILE");
+  command->add_option("--probe", reference.probe, "instead of a picture: irradiance at points, a line `x,y,z,nx,ny,nz` each")
+      ->type_name("FILE.csv");
+  command->add_option("--sides", reference.sides, "both (default), or gltf: back faces of single-sided materials are not there")
+      ->type_name("NAME");
+  command->add_option("--threads", reference.threads, "0 (default): all; the picture is the same for any number")->type_name("N");
+  command->add_option("--stats", options.stats, "times, samples and errors to write")->type_name("FILE.json");
+}
+
 /// Words that no option of the command took. CLI11's own report knows no nearest name.
 void refuseExtras(const CLI::App& command, const std::string& what) {
   const std::vector<std::string> extras = command.remaining();
@@ -99,6 +125,9 @@ int run(int argc, char** argv) {
   render->add_option("--stats", options.stats, "times, memory and counts to write")->type_name("FILE.json");
   render->add_option("--frames", options.frames, "run the graph N times, nothing changed in between (default: 1)")->type_name("N");
   render->add_flag("--validate", options.validate, "with Vulkan's validation layer; its messages are errors");
+  ReferenceOptions referenceOptions;
+  CLI::App* reference = app.add_subcommand("reference", "path trace a scene: the truth, with the variance of every pixel");
+  addReferenceOptions(reference, options, referenceOptions);
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
@@ -108,8 +137,8 @@ int run(int argc, char** argv) {
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
-  const std::vector<std::string> commandNames = {"render", "graph", "scene", "info"};
-  for (CLI::App* command : {render, graph, scene, info}) command->allow_extras();
+  const std::vector<std::string> commandNames = {"render", "reference", "graph", "scene", "info"};
+  for (CLI::App* command : {render, reference, graph, scene, info}) command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -122,7 +151,7 @@ int run(int argc, char** argv) {
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
-    throw Error(ErrorCode::BadInput, "a command is missing; give render, graph, scene or info, or see `radivox --help`");
+    throw Error(ErrorCode::BadInput, "a command is missing; give render, reference, graph, scene or info, or see `radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -136,6 +165,10 @@ int run(int argc, char** argv) {
   }
   requireScene(options, command->get_name());
   if (command == scene) return runScene(options);
+  if (command == reference) {
+    if (command->count("--aov") == 0) options.aovs.clear();
+    return runReference(options, referenceOptions);
+  }
   return command == graph ? runGraph(options) : runRender(options);
 }
 

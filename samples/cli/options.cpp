@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "engine/error.h"
 #include "engine/scene/traits.h"
@@ -48,6 +49,14 @@ uint32_t parseBounces(const std::string& text) {
   if (!readWhole(text, value) || value > kMostBounces) {
     refuse("--bounces", text, "'all', or a whole number from 0 (direct light only) to " + std::to_string(kMostBounces));
   }
+  return value;
+}
+
+double parsePositive(const std::string& option, const std::string& text) {
+  double value = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool read = result.ec == std::errc() && result.ptr == text.data() + text.size();
+  if (!read || !std::isfinite(value) || !(value > 0)) refuse(option, text, "a number above 0");
   return value;
 }
 

@@ -27,6 +27,21 @@ struct Options {
   bool validate = false;
 };
 
+/// What `radivox reference` takes beside SCENE, --camera, --size, --bounces, --aov, --out and --stats.
+struct ReferenceOptions {
+  std::string spp = "64";
+  std::string seed = "0";
+  std::string samplesPerPass = "0";
+  std::string targetError;
+  std::string timeLimit;
+  std::string threads = "0";
+  std::string sides = "both";
+  std::string checkpoint;
+  std::string resume;
+  std::string probe;
+  bool halves = false;
+};
+
 struct Size {
   uint32_t width = 0, height = 0;
 };
@@ -36,10 +51,12 @@ constexpr uint32_t kMaxSide = 16384;
 Size parseSize(const std::string& text);
 uint32_t parseWhole(const std::string& option, const std::string& text, uint32_t min, uint32_t max);
 uint32_t parseBounces(const std::string& text);  ///< a number or "all"
+double parsePositive(const std::string& option, const std::string& text);
 int parseDevice(const std::string& text);
 std::vector<std::string> parseList(const std::string& option, const std::string& text);  ///< "a,b,c": no empty or repeated names
 
 int runRender(const Options& options);
+int runReference(const Options& options, const ReferenceOptions& reference);
 int runGraph(const Options& options);
 int runScene(const Options& options);
 int runInfo(const Options& options);
