@@ -67,8 +67,7 @@ std::vector<ProbeValue> PathTracer::probe(std::span<const ProbePoint> points, co
   std::atomic<bool> cancelled{false};
   std::atomic<size_t> doneCount{0};
   std::mutex callbackMutex;
-  const int threads = settings.threads == 0 ? tbb::task_arena::automatic : static_cast<int>(settings.threads);
-  tbb::task_arena(threads).execute([&] {
+  tbb::task_arena(arenaSize(settings.threads)).execute([&] {
     tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), 4), [&](const tbb::blocked_range<size_t>& range) {
       for (size_t i = range.begin(); i != range.end() && !cancelled; ++i) {
         values[i] = probePoint(*impl_, points[i], settings, combineKeys(key, i), passSize, passCount);

@@ -153,8 +153,7 @@ bool Rendering::advance(const Callbacks& callbacks) {
     }
     tell();
   };
-  const int threads = settings.threads == 0 ? tbb::task_arena::automatic : static_cast<int>(settings.threads);
-  tbb::task_arena(threads).execute([&] {
+  tbb::task_arena(arenaSize(settings.threads)).execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<uint32_t>(0, across * down, 1),
         [&](const tbb::blocked_range<uint32_t>& range) {

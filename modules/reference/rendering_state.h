@@ -1,6 +1,8 @@
 // The state of a Rendering. Internal to modules/reference.
 #pragma once
 
+#include <tbb/info.h>
+
 #include "modules/reference/accumulator.h"
 #include "modules/reference/path_tracer.h"
 
@@ -8,6 +10,12 @@ namespace radivox::reference {
 
 /// Settings::samplesPerPass as it will be. Throws BadInput.
 uint32_t choosePassSize(uint32_t asked, uint32_t spp);
+
+/// Slots of a task arena: Embree limits TBB to the processors there are, and asking for more prints a warning.
+inline int arenaSize(uint32_t threads) {
+  const int most = tbb::info::default_concurrency();
+  return threads == 0 || threads > static_cast<uint32_t>(most) ? most : static_cast<int>(threads);
+}
 
 struct Rendering::Impl {
   const PathTracer& tracer;
