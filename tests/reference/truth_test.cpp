@@ -73,20 +73,20 @@ void expectAgreement(const Comparison& comparison, const std::string& what) {
 
 TEST_F(ReferenceTruth, SlowSponzaOneBounce) {
   // Of one bounce most comes by few bright paths: more samples before means are normal.
-  const auto [direct, indirect] = compare("sponza", 1, 128, 384, 128);
+  const auto [direct, indirect] = compare("sponza", 1, 128, 384, 64);
   expectAgreement(direct, "direct");
   expectAgreement(indirect, "indirect");
 }
 
 TEST_F(ReferenceTruth, SlowSponzaEightBounces) {
-  const auto [direct, indirect] = compare("sponza", 8, 256, 512, 48);
+  const auto [direct, indirect] = compare("sponza", 8, 256, 512, 32);
   expectAgreement(direct, "direct");
   expectAgreement(indirect, "indirect");
 }
 
 TEST_F(ReferenceTruth, SlowCornellPoint) {
   for (const uint32_t bounces : {1u, 8u}) {
-    const auto [direct, indirect] = compare("cornell_point", bounces, 256, 256, 32);
+    const auto [direct, indirect] = compare("cornell_point", bounces, 256, 256, 16);
     expectAgreement(direct, "direct");
     expectAgreement(indirect, "indirect");
   }
@@ -94,7 +94,7 @@ TEST_F(ReferenceTruth, SlowCornellPoint) {
 
 TEST_F(ReferenceTruth, SlowCornell) {
   for (const uint32_t bounces : {1u, 8u}) {
-    const auto [direct, indirect] = compare("cornell", bounces, 256, 256, 32);
+    const auto [direct, indirect] = compare("cornell", bounces, 256, 256, 16);
     EXPECT_GT(direct.pixels.within1, 0.97);
     EXPECT_NEAR(direct.blocks.ratio, 1.0, 0.006);
     EXPECT_GT(indirect.pixels.within1, 0.97);
