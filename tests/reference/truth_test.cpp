@@ -73,7 +73,7 @@ void expectAgreement(const Comparison& comparison, const std::string& what) {
 
 TEST_F(ReferenceTruth, SlowSponzaOneBounce) {
   // Of one bounce most comes by few bright paths: more samples before means are normal.
-  const auto [direct, indirect] = compare("sponza", 1, 128, 384, 64);
+  const auto [direct, indirect] = compare("sponza", 1, 128, 384, 96);
   expectAgreement(direct, "direct");
   expectAgreement(indirect, "indirect");
 }
@@ -86,7 +86,7 @@ TEST_F(ReferenceTruth, SlowSponzaEightBounces) {
 
 TEST_F(ReferenceTruth, SlowCornellPoint) {
   for (const uint32_t bounces : {1u, 8u}) {
-    const auto [direct, indirect] = compare("cornell_point", bounces, 256, 256, 16);
+    const auto [direct, indirect] = compare("cornell_point", bounces, 256, 256, 32);
     expectAgreement(direct, "direct");
     expectAgreement(indirect, "indirect");
   }
