@@ -11,7 +11,7 @@
 //         texels               growable: level 0 of each texture, on its way to the host
 //         (images have a = 1 unless said otherwise; each is made only when somebody reads it)
 // runs    when the scene, the lights, the view or a parameter changes; host-paced, one step a pass
-// cost    spp · pixels · (2 rays a reflection); Embree's hierarchy about 200 B a triangle, 360 B a pixel on the host while it runs
+// cost    spp · pixels · (2 rays a reflection); about 300 B a triangle, 360 B a pixel on the host while it runs
 // source  modules/reference/README.md
 #pragma once
 

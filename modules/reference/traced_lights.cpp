@@ -47,10 +47,7 @@ PathTracer::Impl::Impl(const scene::Scene& scene, Sides sides)
       textures(scene.textures),
       sky(scene.skyRadiance),
       obeysSides(sides == Sides::Gltf && scene.traits().singleSided) {
-  for (const shared::Vertex& vertex : vertices) {
-    const glm::vec3 a = glm::abs(vertex.position);
-    largestCoordinate = std::max(largestCoordinate, std::max(a.x, std::max(a.y, a.z)));
-  }
+  listTriangles();
   listLights(scene);
   Hash hash;
   hash.add(vertices);
@@ -118,9 +115,7 @@ EmitterPoint PathTracer::Impl::sampleEmitters(double u, double v, double choice)
   point.position = (1.f - b.x - b.y) * p0 + b.x * p1 + b.y * p2;
   point.normal = glm::normalize(glm::cross(p1 - p0, p2 - p0));
   point.areaDensity = static_cast<double>(emitterDensities[found->triangle]);
-  float largest = 0.f;
-  for (const glm::vec3& p : {p0, p1, p2}) largest = std::max(largest, std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))));
-  point.clearance = clearanceOf(largest);
+  point.clearance = triangles[found->triangle].clearance;
   point.emission = isThere(found->triangle, b) ? emissionAt(found->triangle, b) : glm::vec3(0.f);
   return point;
 }

@@ -18,13 +18,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Above this, spatial splits cost more time to build than most pictures take to trace.
 constexpr size_t kMostTrianglesForSplits = 4000000;
 
-glm::vec3 cornerSum(const std::vector<shared::Vertex>& vertices, const uint32_t* corners, const glm::vec2& b,
-                    glm::vec3 shared::Vertex::*member) {
-  return (1.f - b.x - b.y) * (vertices[corners[0]].*member) + b.x * (vertices[corners[1]].*member) + b.y * (vertices[corners[2]].*member);
-}
-
-glm::vec2 cornerSum(const std::vector<shared::Vertex>& vertices, const uint32_t* corners, const glm::vec2& b,
-                    glm::vec2 shared::Vertex::*member) {
+glm::vec2 interpolateUv(const std::vector<shared::Vertex>& vertices, const uint32_t* corners, const glm::vec2& b,
+                        glm::vec2 shared::Vertex::*member) {
   return (1.f - b.x - b.y) * (vertices[corners[0]].*member) + b.x * (vertices[corners[1]].*member) + b.y * (vertices[corners[2]].*member);
 }
 
@@ -52,6 +47,24 @@ RTCRay makeRay(const glm::vec3& origin, const glm::vec3& direction, float tNear,
 PathTracer::Impl::~Impl() {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
   if (device_ != nullptr) rtcReleaseDevice(device_);
+}
+
+void PathTracer::Impl::listTriangles() {
+  triangles.reserve(triangleMaterials.size());
+  for (size_t t = 0; t < triangleMaterials.size(); ++t) {
+    TriangleRecord record;
+    float largest = 0.f;
+    for (size_t k = 0; k < 3; ++k) {
+      const shared::Vertex& vertex = vertices[indices[3 * t + k]];
+      record.positions[k] = vertex.position;
+      record.normals[k] = vertex.normal;
+      largest = std::max(largest, largestOf(vertex.position));
+    }
+    record.material = triangleMaterials[t];
+    record.clearance = clearanceOf(largest);
+    triangles.push_back(record);
+    largestCoordinate = std::max(largestCoordinate, largest);
+  }
 }
 
 void PathTracer::Impl::attach(const std::vector<uint32_t>& geometryIndices, bool filtered) {
@@ -120,7 +133,7 @@ bool PathTracer::Impl::isThere(uint32_t triangle, const glm::vec2& barycentric) 
   if ((material.flags & shared::kMaterialAlphaMask) == 0u) return true;
   float alpha = material.alpha;
   if (material.baseTexture != shared::kNoTexture) {
-    const glm::vec2 uv = cornerSum(vertices, &indices[size_t{3} * triangle], barycentric, &shared::Vertex::uvBase);
+    const glm::vec2 uv = interpolateUv(vertices, &indices[size_t{3} * triangle], barycentric, &shared::Vertex::uvBase);
     alpha *= scene::sampleTexture(textures[material.baseTexture], uv).a;
   }
   return alpha >= material.alphaCutoff;
@@ -130,7 +143,7 @@ glm::vec3 PathTracer::Impl::emissionAt(uint32_t triangle, const glm::vec2& baryc
   const shared::Material& material = materials[triangleMaterials[triangle]];
   if ((material.flags & shared::kMaterialEmissive) == 0u) return glm::vec3(0.f);
   if (material.emissiveTexture == shared::kNoTexture) return material.emission;
-  const glm::vec2 uv = cornerSum(vertices, &indices[size_t{3} * triangle], barycentric, &shared::Vertex::uvEmissive);
+  const glm::vec2 uv = interpolateUv(vertices, &indices[size_t{3} * triangle], barycentric, &shared::Vertex::uvEmissive);
   return material.emission * glm::vec3(scene::sampleTexture(textures[material.emissiveTexture], uv));
 }
 
@@ -167,25 +180,26 @@ bool PathTracer::Impl::findSurface(const glm::vec3& origin, const glm::vec3& dir
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
   const uint32_t triangle = triangleOf(query.hit.geomID, query.hit.primID);
-  const uint32_t* corners = &indices[size_t{3} * triangle];
+  const TriangleRecord& record = triangles[triangle];
   const glm::vec2 b(query.hit.u, query.hit.v);
-  const glm::vec3 &p0 = vertices[corners[0]].position, &p1 = vertices[corners[1]].position, &p2 = vertices[corners[2]].position;
+  const float b0 = 1.f - b.x - b.y;
+  const auto& [p0, p1, p2] = record.positions;
   surface.triangle = triangle;
-  surface.position = (1.f - b.x - b.y) * p0 + b.x * p1 + b.y * p2;  // on the plane, however far the ray came
-  surface.clearance = clearanceOf(std::max(largestOf(p0), std::max(largestOf(p1), largestOf(p2))));
+  surface.position = b0 * p0 + b.x * p1 + b.y * p2;  // on the plane, however far the ray came
+  surface.clearance = record.clearance;
   glm::vec3 geometric = glm::normalize(glm::cross(p1 - p0, p2 - p0));
   const bool front = glm::dot(geometric, direction) < 0.f;
   if (!front) geometric = -geometric;
   surface.geometric = geometric;
-  const glm::vec3 normal = cornerSum(vertices, corners, b, &shared::Vertex::normal);
+  const glm::vec3 normal = b0 * record.normals[0] + b.x * record.normals[1] + b.y * record.normals[2];
   const float length2 = glm::dot(normal, normal);
   surface.shading = length2 > 1e-12f ? normal / std::sqrt(length2) : geometric;
   if (glm::dot(surface.shading, geometric) < 0.f) surface.shading = -surface.shading;
 
-  const shared::Material& material = materials[triangleMaterials[triangle]];
+  const shared::Material& material = materials[record.material];
   surface.albedo = material.albedo;
   if (material.baseTexture != shared::kNoTexture) {
-    const glm::vec2 uv = cornerSum(vertices, corners, b, &shared::Vertex::uvBase);
+    const glm::vec2 uv = interpolateUv(vertices, &indices[size_t{3} * triangle], b, &shared::Vertex::uvBase);
     surface.albedo = glm::min(surface.albedo * glm::vec3(scene::sampleTexture(textures[material.baseTexture], uv)), glm::vec3(0.999f));
   }
   surface.emission = front ? emissionAt(triangle, b) : glm::vec3(0.f);

@@ -6,6 +6,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
+
 #include "modules/reference/path_tracer.h"
 
 namespace radivox::reference {
@@ -35,6 +37,14 @@ struct Punctual {
   float range = 0.f, cosInner = 0.f, cosOuter = 0.f;
 };
 
+/// What every hit needs of its triangle, side by side: vertices by way of indices would be two trips to memory, one after the other, and
+/// a fifth of all time.
+struct TriangleRecord {
+  std::array<glm::vec3, 3> positions, normals;
+  uint32_t material;
+  float clearance;
+};
+
 struct PathTracer::Impl {
   Impl(const scene::Scene& scene, Sides sides);
   ~Impl();
@@ -61,6 +71,7 @@ struct PathTracer::Impl {
 
   std::vector<shared::Vertex> vertices;
   std::vector<uint32_t> indices, triangleMaterials;
+  std::vector<TriangleRecord> triangles;
   std::vector<shared::Material> materials;
   std::vector<scene::TextureImage> textures;
   std::vector<Punctual> lights;
@@ -81,6 +92,7 @@ struct PathTracer::Impl {
   uint64_t fingerprint = 0;
 
  private:
+  void listTriangles();
   void listLights(const scene::Scene& scene);
   void buildHierarchy();
   void attach(const std::vector<uint32_t>& geometryIndices, bool filtered);
