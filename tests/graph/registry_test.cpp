@@ -75,6 +75,9 @@ TEST(Registry, ModulesOfThisTreeAreLibrariesToo) {
   const std::string folder = RADIVOX_BINARY_DIR "/modules/";
   loaded.load(folder + "libradivox_frame.so");
   loaded.load(folder + "libradivox_clustered_voxel.so");
+#ifdef RADIVOX_WITH_REFERENCE
+  loaded.load(folder + "libradivox_reference.so");
+#endif
   ASSERT_EQ(loaded.types().size(), linked.types().size());
   EXPECT_GT(loaded.types().size(), 10u);
   for (size_t i = 0; i < linked.types().size(); ++i) {
