@@ -23,11 +23,7 @@ void Filter::declare(graph::Declaration& d) {
   d.read("cluster_radiosity", "only its version: the light changed");
   d.read("row_start", "only its version: the rays changed");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m², filtered; a: sky visibility").persistent = true;
-  d.write("valid", Shape::buffer(4, Extent::of("faces") / 32), "bit per face").persistent = true;
-  d.readBack("status", Shape::buffer(4, 4), "faces filtered by this run, then dispatch arguments");
-  d.scratch("todo", Shape::buffer(4, Extent::of("faces") / 32), "bit per face");
-  d.scratch("list", Shape::buffer(4, Extent::of("faces")), "faces to filter");
-  d.scratch("scan", Shape::buffer(16, Extent::of("faces") / 32 + 1024), "compaction");
+  LazyFaces::declare(d);
   // Passes before the last run over all needed faces, back and forth between these.
   if (radius_ > 0 && passes_ > 1) d.scratch("pass_a", Shape::buffer(16, Extent::of("faces")), "irradiance after odd passes");
   if (radius_ > 0 && passes_ > 2) d.scratch("pass_b", Shape::buffer(16, Extent::of("faces")), "irradiance after even passes");
@@ -36,9 +32,7 @@ void Filter::declare(graph::Declaration& d) {
 void Filter::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
   gpu::Device& device = context.device();
-  scan_ = std::make_unique<gpu::Scan>(device);
-  select_ = gpu::Pipeline(
-      device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/select.comp", .bindings = {kB, kB, kB}, .pushConstantBytes = 12});
+  faces_.prepare(device);
   filter_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/filter/filter.comp",
                                                            .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                            .pushConstantBytes = 12,
@@ -48,26 +42,9 @@ void Filter::prepare(graph::PrepareContext& context) {
 void Filter::record(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const auto faceCount = static_cast<uint32_t>(context.count("faces"));
-  const gpu::Buffer& valid = context.buffer("valid");
   const gpu::Buffer& status = context.buffer("status");
-  if (faceCount == 0) {
-    commands.fill(status, 0);
-    return;
-  }
   const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("row_start") || context.changed("faces");
-  if (stale) {
-    commands.fill(valid, 0);
-    commands.barrier();
-  }
-  struct {
-    uint32_t wordCount, faceCount, all;
-  } selectPush{(faceCount + 31) / 32, faceCount, 0};
-  commands.bind(select_, {context.buffer("shown"), valid, context.buffer("todo")});
-  commands.push(selectPush);
-  commands.dispatchItems(selectPush.wordCount, 64);
-  commands.barrier();
-  scan_->compactBits(commands, context.buffer("todo"), faceCount, context.buffer("list"), status, 64, context.buffer("scan"));
-  commands.barrier();
+  if (!faces_.record(context, context.buffer("shown"), false, stale)) return;
   // The last pass runs over the list alone; those before it over every needed face (mark's reach covers them all).
   const uint32_t passes = radius_ == 0 ? 1 : passes_;
   for (uint32_t pass = 0; pass < passes; ++pass) {
@@ -80,7 +57,7 @@ void Filter::record(graph::RecordContext& context) {
     } push{faceCount, radius_, last ? 1u : 0u};
     commands.push(push);
     if (last) {
-      commands.dispatchIndirect(status, 4);
+      commands.dispatchIndirect(status, LazyFaces::kArgumentsOffset);
     } else {
       commands.dispatchItems(faceCount, 64);
       commands.barrier();

@@ -10,10 +10,8 @@
 //         does not look through a voxel face that stands between the two.
 #pragma once
 
-#include <memory>
-
-#include "engine/gpu/scan.h"
 #include "engine/graph/node.h"
+#include "modules/clustered_voxel/lazy_faces.h"
 
 namespace radivox::clustered_voxel {
 
@@ -34,8 +32,8 @@ class Filter : public graph::Node {
   uint32_t passes_ = 1;
   Weights weights_ = Weights::Surface;
   params::Table table_;
-  gpu::Pipeline select_, filter_;
-  std::unique_ptr<gpu::Scan> scan_;
+  LazyFaces faces_;
+  gpu::Pipeline filter_;
 };
 
 }  // namespace radivox::clustered_voxel

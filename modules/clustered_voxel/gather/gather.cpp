@@ -30,23 +30,16 @@ void Gather::declare(graph::Declaration& d) {
   d.read("cluster_radiosity", "reflected radiosity, W/m²");
   d.read("face_radiosity", "reflected radiosity, W/m²");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m²; a: sky visibility").persistent = true;
-  d.write("valid", Shape::buffer(4, Extent::of("faces") / 32), "bit per face: gathered under the present light").persistent = true;
   graph::Port& error = d.write("error", Shape::buffer(12, Extent::of("faces")), "standard error of E_indirect, W/m²");
   error.persistent = true;
   error.optional = true;
-  d.readBack("status", Shape::buffer(4, 4), "faces gathered by this run, then dispatch arguments");
-  d.scratch("todo", Shape::buffer(4, Extent::of("faces") / 32), "bit per face");
-  d.scratch("list", Shape::buffer(4, Extent::of("faces")), "faces to gather");
-  // Bytes that Scan::compactBits wants: bounded by 4 words a word of bits and one block.
-  d.scratch("scan", Shape::buffer(16, Extent::of("faces") / 32 + 1024), "compaction");
+  LazyFaces::declare(d);
 }
 
 void Gather::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
   gpu::Device& device = context.device();
-  scan_ = std::make_unique<gpu::Scan>(device);
-  select_ = gpu::Pipeline(
-      device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/select.comp", .bindings = {kB, kB, kB}, .pushConstantBytes = 12});
+  faces_.prepare(device);
   gather_ = gpu::Pipeline(
       device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/gather.comp",
                                        .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
@@ -57,29 +50,12 @@ void Gather::prepare(graph::PrepareContext& context) {
 void Gather::record(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const auto faceCount = static_cast<uint32_t>(context.count("faces"));
-  const gpu::Buffer& valid = context.buffer("valid");
   const gpu::Buffer& status = context.buffer("status");
-  if (faceCount == 0) {
-    commands.fill(status, 0);
-    return;
-  }
   // Only a new view leaves earlier results standing.
   const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("face_radiosity") ||
                      context.changed("entries") || context.changed("row_start") || context.changed("chunk_table") ||
                      context.changed("faces") || context.changed("clusters") || context.changed("voxels");
-  if (stale) {
-    commands.fill(valid, 0);
-    commands.barrier();
-  }
-  struct {
-    uint32_t wordCount, faceCount, all;
-  } selectPush{(faceCount + 31) / 32, faceCount, lazy_ ? 0u : 1u};
-  commands.bind(select_, {context.buffer("needed"), valid, context.buffer("todo")});
-  commands.push(selectPush);
-  commands.dispatchItems(selectPush.wordCount, 64);
-  commands.barrier();
-  scan_->compactBits(commands, context.buffer("todo"), faceCount, context.buffer("list"), status, 64, context.buffer("scan"));
-  commands.barrier();
+  if (!faces_.record(context, context.buffer("needed"), !lazy_, stale)) return;
   commands.bind(gather_,
                 {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("clusters"),
                  context.buffer("cluster_radiosity"), context.buffer("face_radiosity"), context.buffer("faces"), context.buffer("voxels"),
@@ -88,7 +64,7 @@ void Gather::record(graph::RecordContext& context) {
     uint32_t clusterCount, faceCount;
   } push{static_cast<uint32_t>(context.count("clusters")), faceCount};
   commands.push(push);
-  commands.dispatchIndirect(status, 4);
+  commands.dispatchIndirect(status, LazyFaces::kArgumentsOffset);
 }
 
 void Gather::frameDone(graph::RecordContext& context) {

@@ -12,10 +12,8 @@
 //         estimator=differential: the paper's (4.4) Σ B_c A_c cosθ cosθ' / (π d²) over distinct visible clusters.
 #pragma once
 
-#include <memory>
-
-#include "engine/gpu/scan.h"
 #include "engine/graph/node.h"
+#include "modules/clustered_voxel/lazy_faces.h"
 
 namespace radivox::clustered_voxel {
 
@@ -35,8 +33,8 @@ class Gather : public graph::Node {
   Estimator estimator_ = Estimator::Counted;
   bool lazy_ = true;
   params::Table table_;
-  gpu::Pipeline select_, gather_;
-  std::unique_ptr<gpu::Scan> scan_;
+  LazyFaces faces_;
+  gpu::Pipeline gather_;
 };
 
 }  // namespace radivox::clustered_voxel
