@@ -42,6 +42,7 @@ Image scaled(const Image& image, float factor);
 Image blockMeans(const Image& image, uint32_t k);
 /// PSNR in dB of images exposed so that the reference's 99th percentile is 1, clamped, sRGB-encoded (METHODS section 5).
 double psnr(const Image& reference, const Image& test);
+double psnr(const Image& reference, const Image& test, float exposure);
 double meanOf(const Image& image);
 
 /// Writes `bytes` to a temporary name beside `path`, flushes, renames: `path` holds the old file or the whole new one, never a part,

@@ -1,9 +1,8 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/error.h"
-#include "engine/image/image.h"
+#include "engine/image/compare.h"
 
 namespace radivox::image {
 
@@ -27,12 +26,7 @@ float exposureOf(const Image& linear) {
     if (std::isfinite(value)) luminance.push_back(value);
   }
   if (luminance.empty()) return 1.f;
-  const double rank = 0.99 * static_cast<double>(luminance.size() - 1);
-  const auto below = luminance.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(luminance.begin(), below, luminance.end());
-  double percentile = *below;
-  const double fraction = rank - std::floor(rank);
-  if (fraction > 0.0) percentile += fraction * (*std::min_element(below + 1, luminance.end()) - *below);
+  const double percentile = percentileOf(std::move(luminance), 0.99);
   const double factor = 1.0 / percentile;
   return percentile > 0.0 && factor <= static_cast<double>(std::numeric_limits<float>::max()) ? static_cast<float>(factor) : 1.f;
 }
@@ -65,21 +59,14 @@ Image blockMeans(const Image& image, uint32_t k) {
 }
 
 double psnr(const Image& reference, const Image& test) {
-  if (reference.width != test.width || reference.height != test.height || reference.channels != test.channels) {
-    const auto print = [](const Image& i) {
-      return std::to_string(i.width) + "x" + std::to_string(i.height) + " with " + std::to_string(i.channels) + " channels";
-    };
-    throw Error(ErrorCode::BadInput, "cannot compare images of " + print(reference) + " and of " + print(test) + "; render both alike");
-  }
-  if (reference.data.empty()) throw Error(ErrorCode::BadInput, "cannot compare empty images; give images with pixels");
-  const float exposure = exposureOf(reference);
+  checkComparable(reference, test);
+  return psnr(reference, test, exposureOf(reference));
+}
+
+double psnr(const Image& reference, const Image& test, float exposure) {
+  checkComparable(reference, test);
   double sum = 0.0;
   for (size_t i = 0; i < reference.data.size(); ++i) {
-    if (std::isnan(reference.data[i]) || std::isnan(test.data[i])) {
-      const size_t pixel = i / reference.channels;
-      throw Error(ErrorCode::BadInput, "cannot compare images: pixel (" + std::to_string(pixel % reference.width) + ", " +
-                                           std::to_string(pixel / reference.width) + ") is not a number; mend the image first");
-    }
     const double a = static_cast<double>(encodeSrgb(reference.data[i] * exposure));
     const double b = static_cast<double>(encodeSrgb(test.data[i] * exposure));
     sum += (a - b) * (a - b);

@@ -145,6 +145,12 @@ Param choiceIndex(std::string name, std::function<uint32_t()> get, std::function
   return p;
 }
 
+Param swept(Param param, std::vector<std::string> values, std::string exact) {
+  param.sweep = std::move(values);
+  param.exact = std::move(exact);
+  return param;
+}
+
 Invalidates Table::set(std::string_view owner, std::string_view name, std::string_view text) {
   const std::string place = std::string(owner) + "." + std::string(name);
   const auto param = std::find_if(params_.begin(), params_.end(), [&](const Param& p) { return p.name == name; });

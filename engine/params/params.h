@@ -1,4 +1,5 @@
-// A parameter is described once and read three times: CLI (`--set node.param=value`), JSON presets, UI.
+// A parameter is described once and read by all: CLI (`--set node.param=value`), JSON presets, UI, and `radivox report`, which tries the
+// values that a parameter says trade time for quality.
 //
 //   struct VoxelizeParams { uint32_t resolution = 128; Method method = Method::Auto; };
 //   params::Table table_{{
@@ -38,6 +39,8 @@ struct Param {
   std::string help;                  ///< one line, with the unit
   std::string defaultValue;
   Invalidates invalidates = Invalidates::Rerun;
+  std::vector<std::string> sweep;  ///< values that trade time for quality, cheapest first; empty: not what the value is for
+  std::string exact;               ///< the value that makes least error of its own, whatever it costs; may lie outside `sweep`
   std::function<std::string()> get;
   std::function<void(double)> setNumber;  ///< already checked; Choice takes the index, Bool 0 or 1
 };
@@ -54,6 +57,9 @@ Param choice(std::string name, E* value, std::vector<std::string> names, std::st
       std::move(name), [value] { return static_cast<uint32_t>(*value); }, [value](uint32_t i) { *value = static_cast<E>(i); },
       std::move(names), std::move(help), invalidates);
 }
+
+/// `param`, which trades time for quality.
+Param swept(Param param, std::vector<std::string> values, std::string exact);
 
 /// The parameters of one node. Points into the node, so the node must not move.
 class Table {

@@ -33,6 +33,8 @@ class GpuScene {
   /// Lights and sky of `scene`: new versions of scene.info, .lights, .shadow_views. Geometry keeps its version. Counts of lights and
   /// shadow layers may change, and with them a plan's shapes.
   void setLights(const Scene& scene);
+  /// A new version of the geometry, which is the same: everything that depends on it runs again. For measuring what that costs.
+  void touchGeometry() { ++geometryVersion_; }
   void setCamera(const CameraDescription& camera, uint32_t width, uint32_t height);
   void importInto(graph::Executor& executor) const;
 

@@ -96,14 +96,18 @@ Aov resolveAov(const std::string& name, const std::map<std::string, std::string>
 params::Table lightTable(scene::LightOptions& lights) {
   using params::Invalidates;
   return params::Table({
-      params::number("shadow_resolution", &lights.shadowResolution, {16, 8192}, "texels a side of a directional or spot light's map",
-                     Invalidates::Plan),
-      params::number("point_shadow_resolution", &lights.pointShadowResolution, {16, 8192}, "texels a side of a point light's cube face",
-                     Invalidates::Plan),
-      params::number("emitter_samples", &lights.emitterSamples, {0, 4096},
-                     "points on emissive triangles, by power; 0: emitters light through voxel rays only", Invalidates::Plan),
-      params::number("emitter_shadow_resolution", &lights.emitterShadowResolution, {16, 4096}, "texels a side of an emitter sample's maps",
-                     Invalidates::Plan),
+      params::swept(params::number("shadow_resolution", &lights.shadowResolution, {16, 8192},
+                                   "texels a side of a directional or spot light's map", Invalidates::Plan),
+                    {"512", "1024", "2048", "4096"}, "4096"),
+      params::swept(params::number("point_shadow_resolution", &lights.pointShadowResolution, {16, 8192},
+                                   "texels a side of a point light's cube face", Invalidates::Plan),
+                    {"256", "512", "1024", "2048"}, "2048"),
+      params::swept(params::number("emitter_samples", &lights.emitterSamples, {0, 4096},
+                                   "points on emissive triangles, by power; 0: emitters light through voxel rays only", Invalidates::Plan),
+                    {"8", "16", "32", "64"}, "128"),
+      params::swept(params::number("emitter_shadow_resolution", &lights.emitterShadowResolution, {16, 4096},
+                                   "texels a side of an emitter sample's maps", Invalidates::Plan),
+                    {"64", "128", "256", "512"}, "512"),
   });
 }
 

@@ -11,6 +11,7 @@
 #include "samples/cli/assets.h"
 #include "samples/cli/interrupt.h"
 #include "samples/cli/options.h"
+#include "samples/report/options.h"
 
 namespace radivox::cli {
 
@@ -86,6 +87,26 @@ void addReferenceOptions(CLI::App* command, Options& options, ReferenceOptions& 
   command->add_option("--stats", options.stats, "times, samples and errors to write")->type_name("FILE.json");
 }
 
+void addReportOptions(CLI::App* report, report::ReportOptions& reportOptions, Options& options) {
+  report->add_option("SCENE", reportOptions.scenes, ".gltf or .glb files, or builtin:NAME[?key=value&...]")->type_name("")->take_all();
+  report->add_option("--out", reportOptions.out, "folder to write; what it holds already is not measured again")->type_name("DIR");
+  report->add_option("--time-limit", reportOptions.timeLimit, "seconds for all (default: none)")->type_name("S");
+  report->add_option("--size", reportOptions.size, "pixels (default: 640x360)")->type_name("WxH");
+  report->add_option("--camera", options.camera, "camera of the scenes (default: the first)")->type_name("NAME|INDEX");
+  report->add_option("--bounces", options.bounces, "indirect bounces of the truth (default: all)")->type_name("N|all");
+  addRepeated(report, "--method", reportOptions.methods, "only this graph or preset; may be repeated", "NAME|FILE.json");
+  addRepeated(report, "--set", options.sets, "one parameter of all methods; may be repeated", "node.param=value");
+  report->add_option("--reference", reportOptions.reference, "truth, or two independent halves (default: the path tracer)")
+      ->type_name("A.exr[,B.exr]");
+  report->add_option("--weights", reportOptions.weights, "samples of the two halves (default: equal)")->type_name("WA,WB");
+  report->add_option("--reference-error", reportOptions.referenceError, "relative noise at which the path tracer stops (default: 0.03)")
+      ->type_name("E");
+  report->add_option("--cache", reportOptions.cache, "folder of path-traced references (default: ~/.cache/radivox/references)")
+      ->type_name("DIR");
+  report->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addRepeated(report, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+}
+
 /// Words that no option of the command took. CLI11's own report knows no nearest name.
 void refuseExtras(const CLI::App& command, const std::string& what) {
   const std::vector<std::string> extras = command.remaining();
@@ -128,6 +149,16 @@ int run(int argc, char** argv) {
   ReferenceOptions referenceOptions;
   CLI::App* reference = app.add_subcommand("reference", "path trace a scene: the truth, with the variance of every pixel");
   addReferenceOptions(reference, options, referenceOptions);
+  CLI::App* compare = app.add_subcommand("compare", "how wrong a picture is: bias, RMSE, relMSE, PSNR, FLIP");
+  compare->add_option("REF", options.reference, "a .exr or .png file, or two independent halves A.exr,B.exr")->type_name("");
+  compare->add_option("TEST", options.test, "the picture to judge")->type_name("");
+  compare->add_option("--layer", options.layer, "which layer of both (default: color)")->type_name("NAME");
+  compare->add_option("--weights", options.weights, "samples of the two halves (default: equal)")->type_name("WA,WB");
+  compare->add_option("--json", options.json, "the figures to write")->type_name("FILE.json");
+  addRepeated(compare, "--out", options.outputs, "FLIP's error as colours (.png), or errors as layers (.exr)", "FILE.exr|.png");
+  report::ReportOptions reportOptions;
+  CLI::App* report = app.add_subcommand("report", "error against run time: every method and preset on these scenes, as report.html");
+  addReportOptions(report, reportOptions, options);
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
@@ -137,8 +168,8 @@ int run(int argc, char** argv) {
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
-  const std::vector<std::string> commandNames = {"render", "reference", "graph", "scene", "info"};
-  for (CLI::App* command : {render, reference, graph, scene, info}) command->allow_extras();
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "graph", "scene", "info"};
+  for (CLI::App* command : {render, reference, compare, report, graph, scene, info}) command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -151,7 +182,8 @@ int run(int argc, char** argv) {
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
-    throw Error(ErrorCode::BadInput, "a command is missing; give render, reference, graph, scene or info, or see `radivox --help`");
+    throw Error(ErrorCode::BadInput,
+                "a command is missing; give render, reference, compare, report, graph, scene or info, or see `radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -159,6 +191,8 @@ int run(int argc, char** argv) {
 
   catchInterrupts();
   if (command == info) return runInfo(options);
+  if (command == compare) return runCompare(options);
+  if (command == report && !reportOptions.scenes.empty()) return report::runReport(reportOptions, options);
   if (command == scene && options.scene.empty()) {
     throw Error(ErrorCode::BadInput,
                 "NAME is missing; give a built-in scene of `radivox info`, as in `radivox scene cornell --out cornell.glb`");

@@ -25,6 +25,12 @@ struct Options {
   std::string frames = "1";
   std::string supersample = "1";
   bool validate = false;
+  // compare
+  std::string reference;  ///< "A" or "A,B"
+  std::string test;
+  std::string layer = "color";
+  std::string weights;
+  std::string json;
 };
 
 /// What `radivox reference` takes beside SCENE, --camera, --size, --bounces, --aov, --out and --stats.
@@ -60,5 +66,6 @@ int runReference(const Options& options, const ReferenceOptions& reference);
 int runGraph(const Options& options);
 int runScene(const Options& options);
 int runInfo(const Options& options);
+int runCompare(const Options& options);
 
 }  // namespace radivox::cli

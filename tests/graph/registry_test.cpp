@@ -187,5 +187,26 @@ TEST_F(LoadedNodeTest, RunsAfterItsRegistryIsGone) {
   EXPECT_EQ(h.figure("stepping", "frames"), 1.0);
 }
 
+TEST(Registry, SweptValuesAreValuesOfTheirParameters) {
+  plugin::Registry registry;
+  registerModules(registry);
+  int swept = 0;
+  for (const plugin::NodeType& type : registry.types()) {
+    const auto node = registry.make(type.name);
+    for (const params::Param& param : node->params().all()) {
+      EXPECT_EQ(param.sweep.empty(), param.exact.empty()) << type.name << "." << param.name;
+      if (param.sweep.empty()) continue;
+      ++swept;
+      EXPECT_GE(param.sweep.size(), 2u) << "nothing to trade";
+      std::vector<std::string> values = param.sweep;
+      values.push_back(param.exact);
+      for (const std::string& value : values) {
+        EXPECT_EQ(errorOf([&] { node->params().set(type.name, param.name, value); }), "") << type.name << "." << param.name;
+      }
+    }
+  }
+  EXPECT_GE(swept, 8);
+}
+
 }  // namespace
 }  // namespace radivox::oracles

@@ -34,8 +34,9 @@ gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindi
 Bounce::Bounce()
     : table_({params::choice("solver", &solver_, {"chebyshev", "plain"}, "accelerated, or plain iteration (for comparison)",
                              params::Invalidates::Rerun),
-              params::number("residual", &residual_, {1e-7, 0.1}, "where to stop: largest residual over the largest source",
-                             params::Invalidates::Rerun),
+              params::swept(params::number("residual", &residual_, {1e-7, 0.1}, "where to stop: largest residual over the largest source",
+                                           params::Invalidates::Rerun),
+                            {"0.01", "0.001", "0.0001"}, "0.000001"),
               params::number("iterations", &iterations_, {1, 20000}, "most iterations", params::Invalidates::Rerun)}) {}
 
 void Bounce::declare(graph::Declaration& d) {

@@ -44,7 +44,8 @@ gpu::BoundResource partOf(const gpu::Buffer& buffer, uint32_t k, uint32_t faceCo
 }  // namespace
 
 Cluster::Cluster()
-    : table_({params::number("spacing", &spacing_, {2, 32}, "seed spacing S, voxels", params::Invalidates::Rerun),
+    : table_({params::swept(params::number("spacing", &spacing_, {2, 32}, "seed spacing S, voxels", params::Invalidates::Rerun),
+                            {"12", "8", "6", "4", "3"}, "2"),
               params::number("angle", &angleDegrees_, {5, 44}, "largest angle between a face's normal and its seed's, degrees",
                              params::Invalidates::Rerun),
               params::number("space_weight", &spaceWeight_, {0, 100},

@@ -9,8 +9,11 @@ using graph::Extent;
 using graph::Shape;
 
 Filter::Filter()
-    : table_({params::number("radius", &radius_, {0, 8}, "half width of the kernel in voxels; 0: no filter", params::Invalidates::Plan),
-              params::number("passes", &passes_, {1, 4}, "how often the kernel is applied", params::Invalidates::Plan),
+    : table_({params::swept(
+                  params::number("radius", &radius_, {0, 8}, "half width of the kernel in voxels; 0: no filter", params::Invalidates::Plan),
+                  {"0", "1", "2", "3"}, "0"),
+              params::swept(params::number("passes", &passes_, {1, 4}, "how often the kernel is applied", params::Invalidates::Plan),
+                            {"1", "2", "3"}, "1"),
               params::choice("weights", &weights_, {"surface", "gaussian"},
                              "surface: by distance, area, normal, plane, and no wall between; gaussian: the paper's, unlit faces dropped",
                              params::Invalidates::Plan)}) {}

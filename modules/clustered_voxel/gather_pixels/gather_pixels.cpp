@@ -32,10 +32,13 @@ std::vector<glm::vec4> cosineDirections(uint32_t count) {
 }
 
 GatherPixels::GatherPixels()
-    : table_({params::number("rays", &rays_, {1, 256}, "voxel rays a pixel; a 4×4 block of pixels shares 16 times as many directions",
-                             params::Invalidates::Plan),
-              params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
-                             params::Invalidates::Plan)}) {}
+    : table_({params::swept(
+                  params::number("rays", &rays_, {1, 256}, "voxel rays a pixel; a 4×4 block of pixels shares 16 times as many directions",
+                                 params::Invalidates::Plan),
+                  {"4", "8", "16", "32", "64"}, "256"),
+              params::swept(params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
+                                           params::Invalidates::Plan),
+                            {"0", "1", "2"}, "0")}) {}
 
 void GatherPixels::declare(graph::Declaration& d) {
   const Shape image = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));

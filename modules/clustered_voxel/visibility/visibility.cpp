@@ -29,7 +29,8 @@ uint64_t clearanceBytes(const shared::Grid& grid) {
 
 Visibility::Visibility()
     : table_(
-          {params::number("rays", &rays_, {1, shared::kMaxRays}, "rays per voxel face", params::Invalidates::Plan),
+          {params::swept(params::number("rays", &rays_, {1, shared::kMaxRays}, "rays per voxel face", params::Invalidates::Plan),
+                         {"16", "32", "64", "128", "256"}, "256"),
            params::choice("traversal", &traversal_, {"dda", "bresenham"},
                           "dda: every voxel a ray touches; bresenham: the paper's 26-connected line, which stops at any voxel",
                           params::Invalidates::Plan),
@@ -45,8 +46,10 @@ Visibility::Visibility()
            params::choice("weights", &weights_, {"seen", "area"},
                           "what a face counts for in its cluster's means: how much of it other faces see, or its area",
                           params::Invalidates::Plan),
-           params::number("near", &near_, {0.0, 4096.0}, "hits up to this distance keep their face instead of its cluster, voxels",
-                          params::Invalidates::Rerun)}) {}
+           params::swept(
+               params::number("near", &near_, {0.0, 4096.0}, "hits up to this distance keep their face instead of its cluster, voxels",
+                              params::Invalidates::Rerun),
+               {"0", "4", "8", "16"}, "4096")}) {}
 
 void Visibility::declare(graph::Declaration& d) {
   d.read("grid", "Grid");

@@ -9,12 +9,13 @@ using gpu::BindingType;
 using graph::Shape;
 
 Voxelize::Voxelize()
-    : table_(
-          {params::number("resolution", &resolution_, {8, 1024}, "voxels along the longest side of the bounds", params::Invalidates::Plan),
-           params::choice("sides", &sides_, {"both", "gltf"},
-                          "both: every surface reflects on both sides; gltf: single-sided materials on the front only",
-                          params::Invalidates::Plan),
-           TrianglePass::methodParam(&method_)}) {}
+    : table_({params::swept(params::number("resolution", &resolution_, {8, 1024}, "voxels along the longest side of the bounds",
+                                           params::Invalidates::Plan),
+                            {"32", "64", "128", "256"}, "256"),
+              params::choice("sides", &sides_, {"both", "gltf"},
+                             "both: every surface reflects on both sides; gltf: single-sided materials on the front only",
+                             params::Invalidates::Plan),
+              TrianglePass::methodParam(&method_)}) {}
 
 void Voxelize::declare(graph::Declaration& d) {
   grid_ = makeGridWithin(d.traits, resolution_, d.capabilities.maxStorageBufferRange, "voxelize.resolution");
