@@ -145,6 +145,15 @@ int run(int argc, char** argv) {
   addRepeated(render, "--out", options.outputs, "picture to write; may be repeated", "FILE.exr|.png");
   render->add_option("--stats", options.stats, "times, memory and counts to write")->type_name("FILE.json");
   render->add_option("--frames", options.frames, "run the graph N times, nothing changed in between (default: 1)")->type_name("N");
+  render
+      ->add_option("--max-error", options.maxError,
+                   "the fastest settings whose color errs by at most X of its mean (RMSE), measured on this scene")
+      ->type_name("X");
+  render
+      ->add_option("--budget-ms", options.budgetMs, "the best settings that take at most T milliseconds a picture, measured on this scene")
+      ->type_name("T");
+  render->add_option("--calibration-time", options.calibrationTime, "seconds that these measurements may take, once (default: 120)")
+      ->type_name("S");
   render->add_flag("--validate", options.validate, "with Vulkan's validation layer; its messages are errors");
   ReferenceOptions referenceOptions;
   CLI::App* reference = app.add_subcommand("reference", "path trace a scene: the truth, with the variance of every pixel");

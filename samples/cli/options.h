@@ -25,6 +25,10 @@ struct Options {
   std::string frames = "1";
   std::string supersample = "1";
   bool validate = false;
+  // render: settings by what they cost and how wrong they are
+  std::string maxError;
+  std::string budgetMs;
+  std::string calibrationTime = "120";
   // compare
   std::string reference;  ///< "A" or "A,B"
   std::string test;

@@ -10,6 +10,7 @@
 #include "samples/cli/picture.h"
 #include "samples/cli/progress.h"
 #include "samples/cli/stats.h"
+#include "samples/report/budget.h"
 
 namespace radivox::cli {
 
@@ -84,6 +85,19 @@ void writePictures(const Options& options, const Job& job, gpu::Device& device, 
   }
 }
 
+/// The same command with the settings that keep its budget.
+Options withinBudget(const Options& options) {
+  report::Budget budget;
+  if (!options.maxError.empty()) budget.maxError = parsePositive("--max-error", options.maxError);
+  if (!options.budgetMs.empty()) budget.milliseconds = parsePositive("--budget-ms", options.budgetMs);
+  budget.calibrationSeconds = parsePositive("--calibration-time", options.calibrationTime);
+  report::Choice choice = report::chooseSetting(options, budget);
+  std::cout << "settings: " << choice.text << std::endl;
+  choice.options.maxError.clear();
+  choice.options.budgetMs.clear();
+  return choice.options;
+}
+
 void printWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::cerr << "radivox: warning: " << warning << "\n";
 }
@@ -96,6 +110,7 @@ int runRender(const Options& options) {
   const std::vector<std::string> aovNames = parseList("--aov", options.aovs);
   checkOutputs(options, aovNames);
   const uint32_t frameCount = parseWhole("--frames", options.frames, 1, 10000);
+  if (!options.maxError.empty() || !options.budgetMs.empty()) return runRender(withinBudget(options));
   const bool wantsPng =
       std::any_of(options.outputs.begin(), options.outputs.end(), [](const std::string& path) { return extensionOf(path) == ".png"; });
   std::unique_ptr<gpu::Device> device;  // outlives the job, whose nodes hold pipelines
