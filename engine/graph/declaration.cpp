@@ -3,7 +3,7 @@
 namespace radivox::graph {
 namespace {
 
-Port& append(std::vector<Port>& ports, std::string name, Access access, Shape shape, std::string meaning, uint32_t use) {
+Port& append(std::deque<Port>& ports, std::string name, Access access, Shape shape, std::string meaning, uint32_t use) {
   Port& port = ports.emplace_back();
   port.name = std::move(name);
   port.access = access;

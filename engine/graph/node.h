@@ -13,6 +13,7 @@
 // A node that modifies a resource makes the writer of the version before it run again too, or it would modify its own result.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -85,7 +86,7 @@ class Declaration {
   /// The node has nothing to do here; its outputs do not exist. `reason` is printed in the plan.
   void leaveOut(std::string reason) { leftOut_ = std::move(reason); }
 
-  std::vector<Port> ports;
+  std::deque<Port> ports;  ///< not a vector: what read() and write() return stays good when more ports follow
   struct PublishedCount {
     std::string name, port;
     uint64_t byteOffset;

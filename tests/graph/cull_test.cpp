@@ -38,6 +38,16 @@ std::map<std::string, std::string> reasons(const Plan& plan) {
 
 using Names = std::vector<std::string>;
 
+TEST(Declaration, APortStaysWhereItIsWhenOthersFollow) {
+  const scene::Traits traits;
+  const scene::Request request;
+  const gpu::Capabilities capabilities{};
+  Declaration d(traits, request, capabilities);
+  const graph::Port& first = d.read("first", "words");
+  for (int i = 0; i < 100; ++i) d.write("port " + std::to_string(i), kWords, "words");
+  EXPECT_EQ(&first, &d.ports.front());
+}
+
 TEST(Cull, OutputsThatNobodyNeeds) {
   //  source ──▶ used ──▶ (output)
   //     └─────▶ unused

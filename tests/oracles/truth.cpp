@@ -7,12 +7,6 @@ namespace radivox::oracles {
 
 namespace {
 
-image::Image layerOf(const std::vector<image::Layer>& layers, const std::string& name) {
-  for (const image::Layer& layer : layers)
-    if (layer.name == name) return layer.image;
-  throw Error(ErrorCode::BadInput, "truth has no layer " + name);
-}
-
 image::Image mixed(const image::Image& a, const image::Image& b, double weightA) {
   image::Image out = a;
   for (size_t i = 0; i < out.data.size(); ++i) out.data[i] = static_cast<float>(weightA * a.data[i] + (1.0 - weightA) * b.data[i]);
@@ -28,6 +22,12 @@ image::Image masked(const image::Image& in, const image::Image& albedo) {
 }
 
 }  // namespace
+
+image::Image layerOf(const std::vector<image::Layer>& layers, const std::string& name) {
+  for (const image::Layer& layer : layers)
+    if (layer.name == name) return layer.image;
+  throw Error(ErrorCode::BadInput, "truth has no layer " + name);
+}
 
 Truth loadTruth(const std::string& name, double weightA) {
   const std::string folder = sharedFolder() + "/truth/" + name;

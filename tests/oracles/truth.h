@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/image/image.h"
 
@@ -14,6 +15,9 @@ struct Truth {
 
 /// `name` as in "sponza_b8"; `weightA` is a's share of the samples.
 Truth loadTruth(const std::string& name, double weightA);
+
+/// Throws BadInput where the file has no such layer.
+image::Image layerOf(const std::vector<image::Layer>& layers, const std::string& name);
 
 struct Difference {
   double psnr = 0;  ///< dB on 4×4 block means, exposed to the reference's 99th percentile, sRGB-encoded

@@ -5,16 +5,11 @@
 
 #include "engine/error.h"
 #include "tests/oracles/pipeline.h"
+#include "tests/oracles/truth.h"
 
 namespace radivox::oracles {
 
 namespace {
-
-image::Image layerOf(const std::vector<image::Layer>& layers, const std::string& name) {
-  for (const image::Layer& layer : layers)
-    if (layer.name == name) return layer.image;
-  throw Error(ErrorCode::BadInput, "truth has no layer " + name);
-}
 
 /// Variance of rounding a value to 11 significant bits.
 double halfRounding(double value) {

@@ -59,15 +59,13 @@ void Bounce::declare(graph::Declaration& d) {
   d.read("members", "face ids by cluster");
   d.read("labels", "cluster id of each face");
   d.read("faces", "Face");
-  const bool byRays = d.traits.emittersByRays;
-  // Of each port its own reference: the next one may move it.
-  for (const auto& [name, meaning] :
-       {std::pair{"emission", "mean B_e of each face, W/m²"}, {"weights", "how much of each face others see"}}) {
-    graph::Port& port = d.read(name, meaning);
-    port.optional = port.unwanted = !byRays;
-    port.unwantedReason = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
-    if (std::string_view(name) == "weights") port.optional = true;
-  }
+  graph::Port& emission = d.read("emission", "mean B_e of each face, W/m²");
+  emission.optional = emission.unwanted = !d.traits.emittersByRays;
+  emission.unwantedReason = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
+  graph::Port& weights = d.read("weights", "how much of each face others see, for the mean of emission");
+  weights.optional = true;
+  weights.unwanted = emission.unwanted;
+  weights.unwantedReason = emission.unwantedReason;
   d.read("face_irradiance", "E_dir of each face, W/m²");
   d.read("direct_radiosity", "reflected direct light of each cluster, W/m²");
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");
