@@ -36,6 +36,9 @@ GatherPixels::GatherPixels()
                   params::number("rays", &rays_, {1, 256}, "voxel rays a pixel; a 4×4 block of pixels shares 16 times as many directions",
                                  params::Invalidates::Plan),
                   {"4", "8", "16", "32", "64"}, "256"),
+              params::swept(params::number("near", &near_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels; 0: voxels only",
+                                           params::Invalidates::Plan),
+                            {"0", "2", "4", "8"}, "4096"),
               params::swept(params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
                                            params::Invalidates::Plan),
                             {"0", "1", "2"}, "0")}) {}
@@ -50,6 +53,22 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.read("plane_extras", "where the planes of a voxel after its first are");
   d.read("clearance", "half-size of the empty cube around each voxel").optional = true;
   d.read("face_radiosity", "reflected radiosity, W/m²");
+  const bool masked = near_ > 0.f && d.traits.alphaMasked;
+  const auto readNear = [&d](const char* name, const char* meaning, bool wanted, const char* reason) {
+    graph::Port& port = d.read(name, meaning);
+    port.optional = true;
+    port.unwanted = !wanted;
+    port.unwantedReason = reason;
+  };
+  constexpr const char* kNoTriangles = "gather_pixels.near is 0: rays test no triangles";
+  readNear("triangle", "id + 1 of the pixel's triangle", near_ > 0.f, kNoTriangles);
+  readNear("triangle_first", "first triangle of each voxel", near_ > 0.f, kNoTriangles);
+  readNear("triangle_ids", "triangles of each voxel", near_ > 0.f, kNoTriangles);
+  readNear("scene.vertices", "Vertex", near_ > 0.f, kNoTriangles);
+  readNear("scene.indices", "three a triangle", near_ > 0.f, kNoTriangles);
+  readNear("scene.triangle_materials", "one a triangle", masked, "no near triangle has an alpha mask");
+  readNear("scene.materials", "Material", masked, "no near triangle has an alpha mask");
+  readNear("scene.textures", "Texture", masked, "no near triangle has an alpha mask");
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   d.scratch("raw", image, "E_indirect from each pixel's own rays");
   if (smooth_ > 0) d.scratch("between", image, "E_indirect between filter passes");
@@ -62,11 +81,15 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   const std::vector<glm::vec4> directions = cosineDirections(kBlock * kBlock * rays_);
   directions_ = gpu::Buffer(device, "gather_pixels.directions", directions.size() * sizeof(glm::vec4));
   gpu::upload(device, directions_, directions);
+  hasTriangles_ = context.has("triangle_ids");
+  isMasked_ = hasTriangles_ && context.traits().alphaMasked;
+  std::vector<BindingType> bindings(23, kB);
+  for (const size_t image : {6, 7, 11, 15}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
-                                                          .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kB, kI, kB, kB, kB},
-                                                          .pushConstantBytes = 16,
-                                                          .constants = {{0, skip}}});
+                                                          .bindings = bindings,
+                                                          .pushConstantBytes = 20,
+                                                          .constants = {{0, skip}, {1, hasTriangles_ ? 1u : 0u}, {2, isMasked_ ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -82,14 +105,23 @@ void GatherPixels::record(graph::RecordContext& context) {
   const gpu::Image& raw = context.image("raw");
   struct {
     uint32_t width, height, rays, voxelCount;
-  } push{raw.info().width, raw.info().height, rays_, static_cast<uint32_t>(context.count("voxels"))};
+    float near;
+  } push{raw.info().width, raw.info().height, rays_, static_cast<uint32_t>(context.count("voxels")), near_};
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
   std::vector<const gpu::Buffer*> grown;
   if (context.has("clearance")) grown = context.grown("clearance");
   const gpu::Buffer& distance = context.buffer("distance");
+  // What is absent is never read: another buffer or image takes its binding.
+  std::vector<const gpu::Buffer*> ids;
+  if (hasTriangles_) ids = context.grown("triangle_ids");
+  const auto optional = [&](const char* name, bool present) -> const gpu::Buffer& { return present ? context.buffer(name) : distance; };
   bindStructure(context, grown.empty() ? traceBricks_ : trace_,
                 {position, normal, distance, context.buffer("face_radiosity"), directions_, raw, context.buffer("planes"),
-                 context.buffer("plane_extras"), grown.empty() ? distance : *grown.front()});
+                 context.buffer("plane_extras"), grown.empty() ? distance : *grown.front(),
+                 hasTriangles_ ? context.image("triangle") : raw, optional("triangle_first", hasTriangles_),
+                 ids.empty() ? distance : *ids.front(), optional("scene.vertices", hasTriangles_), optional("scene.indices", hasTriangles_),
+                 optional("scene.triangle_materials", isMasked_), optional("scene.materials", isMasked_),
+                 optional("scene.textures", isMasked_)});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);

@@ -29,6 +29,8 @@ class GatherPixels : public graph::Node {
  private:
   uint32_t rays_ = 16;
   uint32_t smooth_ = 1;
+  float near_ = 4.f;
+  bool hasTriangles_ = false, isMasked_ = false;
   params::Table table_;
   gpu::Buffer directions_;
   gpu::Pipeline trace_, traceBricks_, filter_;

@@ -1,10 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 // One lane a pixel: the mean radiosity along its share of the block's directions. See modules/clustered_voxel/gather_pixels/gather_pixels.h.
 #include "shared/dispatch.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kSkip = 2;
+layout(constant_id = 1) const bool kNear = false;    // the first voxels of a ray are tested by their triangles
+layout(constant_id = 2) const bool kMasked = false;  // some material has an alpha mask
 
 #define RADIVOX_BIND_DISTANCE 8
 #define RADIVOX_BIND_CAST_FIRST 4
@@ -19,14 +23,25 @@ layout(set = 0, binding = 7, rgba32f) readonly uniform image2D normalImage;
 layout(set = 0, binding = 9, scalar) readonly buffer RadiosityBuffer { vec3 faceRadiosity[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer DirectionBuffer { vec4 directions[]; };
 layout(set = 0, binding = 11, rgba32f) writeonly uniform image2D rawImage;
+#include "shared/scene.h"
+layout(set = 0, binding = 15, r32ui) readonly uniform uimage2D triangleImage;
+layout(set = 0, binding = 16, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
+layout(set = 0, binding = 17, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
+layout(set = 0, binding = 18, scalar) readonly buffer Vertices { Vertex vertices[]; };
+layout(set = 0, binding = 19, scalar) readonly buffer Indices { uint indices[]; };
+layout(set = 0, binding = 20, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
+layout(set = 0, binding = 21, scalar) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 22, scalar) readonly buffer Textures { Texture textures[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
   uint rays;
   uint voxelCount;
+  float nearDistance;  // voxels
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_cast.glsl"
+#include "clustered_voxel/gather_pixels/near_triangles.glsl"
 #include "clustered_voxel/visibility/visibility.h"
 
 // Tangents of n that turn smoothly with it (but at −z).
@@ -37,6 +52,8 @@ void frameOf(vec3 n, out vec3 t, out vec3 b) {
   t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
   b = vec3(c, s + n.y * n.y * a, -n.y);
 }
+
+const float kNearLift = 1e-3;  // voxels
 
 void main() {
   castBegin();
@@ -52,47 +69,82 @@ void main() {
   uint end = position.w != 0.0 ? rays : 0u;
   vec3 p = toGridSpace(grid, position.xyz);
   vec3 n = end > 0u ? imageLoad(normalImage, ivec2(pixel)).xyz : vec3(0.0, 0.0, 1.0);
-  vec3 origin = liftedOrigin(p, n);
+  // Triangles need no lift but against rounding; mean planes do.
+  vec3 origin = kNear ? p + kNearLift * n : liftedOrigin(p, n);
   ivec3 start = clamp(ivec3(floor(origin)), ivec3(0), ivec3(castSize) - 1);
   bool crowded = false;
   uint excluded = 0x3fu;
-  uint voxel = voxelIndex(start);
-  if (voxel != kNone) excluded = ownPlanes(voxel, uvec3(start), p, n, crowded);
+  uint startVoxel = voxelIndex(start);
+  if (startVoxel != kNone) excluded = ownPlanes(startVoxel, uvec3(start), p, n, crowded);
+  uint own = end > 0u ? imageLoad(triangleImage, ivec2(pixel)).x - 1u : 0u;
   vec3 t, b;
   frameOf(n, t, b);
 
-  // As in visibility/trace.comp: lanes go on to their next ray each on its own.
   vec4 sum = vec4(0.0);
-  TraversalRay way = makeTraversalRay(origin, n);
-  TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
-  uint inFront = 0u;
-  bool fresh = true;
-  uint ray = 0u;
-  while (subgroupAny(ray < end)) {
+  for (uint ray = 0u; subgroupAny(ray < end); ++ray) {
     bool busy = ray < end;
-    uint at = min(ray, rays - 1u);
-    vec3 local = directions[place * rays + at].xyz;
-    TraversalRay next = makeTraversalRay(origin, t * local.x + b * local.y + n * local.z);
-    way.direction = mix(way.direction, next.direction, bvec3(fresh));
-    way.inverse = mix(way.inverse, next.inverse, bvec3(fresh));
-    way.forward = mix(way.forward, next.forward, bvec3(fresh));
-    cursor.voxel = mix(cursor.voxel, vec3(start), bvec3(fresh));
-    cursor.time = fresh ? 0.0 : cursor.time;
-    inFront = fresh ? 0u : inFront;
-    bool stay = fresh && crowded;
-    TraversalCursor stepped = cursor;
-    traversalStep(way, stepped);
-    cursor.voxel = mix(stepped.voxel, cursor.voxel, bvec3(stay));
-    cursor.time = stay ? cursor.time : stepped.time;
-    if (castMarch(way, cursor, busy && !stay)) inFront = 0u;
-    bool outside = isOutside(cursor.voxel);
-    uint hit = castFace(way, cursor, busy, stay ? excluded : 0u, inFront, rayRandom(i, at));
-    fresh = !busy || outside || hit != kHitNothing;
-    bool isFace = busy && !outside && hit < kHitBack;
+    vec3 local = directions[place * rays + min(ray, rays - 1u)].xyz;
+    TraversalRay way = makeTraversalRay(origin, t * local.x + b * local.y + n * local.z);
+    TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
+    uint random = rayRandom(i, ray);
+    uint hit = kHitNothing;
+    bool atStart = true;
+    bool going = busy;
+    if (kNear) {
+      bool looking = busy;
+      while (subgroupAny(looking)) {
+        if (castMarch(way, cursor, looking)) atStart = false;
+        bool outside = isOutside(cursor.voxel);
+        looking = looking && !outside && cursor.time < nearDistance;
+        uint voxel = looking ? voxelIndex(ivec3(cursor.voxel)) : 0u;
+        looking = looking && voxel != kNone;
+        voxel = looking ? voxel : 0u;
+        float time;
+        vec3 normal;
+        if (meetsTriangle(way, cursor, looking, voxel, own, time, normal)) {
+          hit = faceTowards(way, voxel, normal, random);
+          cursor.time = time;
+          looking = going = false;
+        }
+        bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];
+        if (subgroupAny(noList)) {
+          uint none = 0u;
+          uint found = castFace(way, cursor, noList, atStart ? excluded : 0u, none, random);
+          if (found != kHitNothing) {
+            hit = found;
+            looking = going = false;
+          }
+        }
+        TraversalCursor stepped = cursor;
+        traversalStep(way, stepped);
+        cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(looking));
+        cursor.time = looking ? stepped.time : cursor.time;
+        atStart = atStart && !looking;
+      }
+    } else {
+      TraversalCursor stepped = cursor;
+      traversalStep(way, stepped);
+      cursor.voxel = mix(stepped.voxel, cursor.voxel, bvec3(crowded));
+      cursor.time = crowded ? 0.0 : stepped.time;
+      atStart = crowded;
+    }
+    uint inFront = 0u;
+    while (subgroupAny(going)) {
+      if (castMarch(way, cursor, going && !atStart)) inFront = 0u;
+      going = going && !isOutside(cursor.voxel);
+      uint found = castFace(way, cursor, going, atStart ? excluded : 0u, inFront, random);
+      hit = going ? found : hit;
+      going = going && found == kHitNothing;
+      TraversalCursor stepped = cursor;
+      traversalStep(way, stepped);
+      cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(going));
+      cursor.time = going ? stepped.time : cursor.time;
+      atStart = false;
+    }
+    bool isFace = busy && hit < kHitBack;
     vec3 radiosity = faceRadiosity[isFace ? hit : 0u];
     sum.xyz += isFace ? radiosity : vec3(0.0);
-    sum.w += busy && outside ? 1.0 : 0.0;
-    ray += fresh && busy ? 1u : 0u;
+    sum.w += busy && hit == kHitNothing ? 1.0 : 0.0;
   }
   if (isPixel) imageStore(rawImage, ivec2(pixel), end > 0u ? sum / float(rays) : vec4(0.0));
 }

@@ -1,0 +1,88 @@
+#include "modules/clustered_voxel/voxelize/triangles.h"
+
+#include <array>
+
+namespace radivox::clustered_voxel {
+
+using graph::Extent;
+using graph::Shape;
+
+Triangles::Triangles()
+    : table_({TrianglePass::methodParam(&method_),
+              params::number("most", &most_, {1, 1024}, "voxels met by more triangles have no list", params::Invalidates::Rerun)}) {}
+
+void Triangles::declare(graph::Declaration& d) {
+  const uint32_t use = TrianglePass::useOf(method_);
+  TrianglePass::declare(d, method_);
+  d.read("grid", "Grid", use);
+  d.read("occupancy", "two words a brick", use);
+  d.read("rank", "occupied voxels before the brick", use);
+  const Extent voxels = Extent::of("voxels");
+  d.write("first", Shape::buffer(4, voxels + 1), "triangles in the lists of the voxels before, then the total", use | graph::UseTransfer);
+  d.write("ids", Shape::buffer(4, Extent::of("triangle_entries")), "triangle ids, ascending within a voxel").growable = true;
+  d.publishCount("triangle_entries", "", 0);
+  d.scratch("next", Shape::buffer(4, voxels + 1), "triangles met, then the next free place of each voxel", use | graph::UseTransfer);
+  d.scratch("total", Shape::buffer(4, 2), "entries, low and high word");
+  d.scratch("scan", Shape::buffer(4, voxels / 256 + 4096), "scan of the lists");
+  d.hostPaced();
+}
+
+void Triangles::prepare(graph::PrepareContext& context) {
+  gpu::Device& device = context.device();
+  constexpr auto kB = gpu::BindingType::StorageBuffer;
+  count_.prepare(device, method_, kType, "triangles", 9, {{0, 0}});
+  fill_.prepare(device, method_, kType, "triangles", 9, {{0, 1}});
+  limit_ = gpu::Pipeline(
+      device,
+      gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/limit_triangles.comp", .bindings = {kB, kB}, .pushConstantBytes = 8});
+  sort_ = gpu::Pipeline(
+      device,
+      gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/sort_triangles.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
+  scan_ = std::make_unique<gpu::Scan>(device);
+}
+
+void Triangles::record(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto voxelCount = static_cast<uint32_t>(context.count("voxels"));
+  const gpu::Buffer& first = context.buffer("first");
+  const gpu::Buffer& next = context.buffer("next");
+  const bool isCount = context.step() == 0;
+  if (!isCount && context.grown("ids").empty()) return;
+  if (isCount)
+    commands.fill(next, 0);
+  else
+    commands.copy(first, next, 4 * (uint64_t{voxelCount} + 1));
+  commands.barrier();
+  const std::array<gpu::BoundResource, 5> rest = {context.buffer("occupancy"), context.buffer("rank"), first, next,
+                                                  isCount ? next : *context.grown("ids").front()};
+  (isCount ? count_ : fill_).record(context, context.buffer("grid"), rest);
+  commands.barrier();
+  if (isCount) {
+    commands.bind(limit_, {next, first});
+    const struct {
+      uint32_t voxelCount, most;
+    } push{voxelCount, most_};
+    commands.push(push);
+    commands.dispatchItems(uint64_t{voxelCount} + 1, 64);
+    scan_->scan(commands, first, first, uint64_t{voxelCount} + 1, context.buffer("scan"), &context.buffer("total"));
+  } else {
+    commands.bind(sort_, {first, *context.grown("ids").front()});
+    commands.push(voxelCount);
+    commands.dispatchItems(voxelCount, 64);
+  }
+}
+
+void Triangles::stepDone(graph::RecordContext& context) {
+  if (context.step() != 0) return;
+  uint32_t total[2];
+  const std::vector<std::byte> words = context.readBuffer("total", 0, sizeof(total));
+  std::memcpy(total, words.data(), sizeof(total));
+  if (total[1] != 0)
+    throw Error(ErrorCode::OutOfMemory,
+                "clustered_voxel.triangles: more than 2^32 triangles in voxels; lower triangles.most or voxelize.resolution");
+  context.clearGrown("ids");
+  if (total[0] > 0) context.grow("ids", uint64_t{total[0]} * 4);
+  context.setCount("triangle_entries", total[0]);
+}
+
+}  // namespace radivox::clustered_voxel
