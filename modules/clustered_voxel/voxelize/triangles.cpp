@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "modules/clustered_voxel/voxelize/faces.h"
+
 namespace radivox::clustered_voxel {
 
 using graph::Extent;
@@ -17,9 +19,15 @@ void Triangles::declare(graph::Declaration& d) {
   d.read("grid", "Grid", use);
   d.read("occupancy", "two words a brick", use);
   d.read("rank", "occupied voxels before the brick", use);
+  d.read("voxels", "packed coordinate of each voxel");
+  d.read("scene.triangle_materials", "one a triangle");
+  d.read("scene.materials", "Material");
+  d.read("scene.textures", "Texture");
   const Extent voxels = Extent::of("voxels");
   d.write("first", Shape::buffer(4, voxels + 1), "triangles in the lists of the voxels before, then the total", use | graph::UseTransfer);
   d.write("ids", Shape::buffer(4, Extent::of("triangle_entries")), "triangle ids, ascending within a voxel").growable = true;
+  graph::Port& exposure = d.write("exposure", Shape::buffer(4, Extent::of("triangle_entries")), "rays of eight that see far, front | back << 8");
+  exposure.growable = exposure.optional = true;
   d.publishCount("triangle_entries", "", 0);
   d.scratch("next", Shape::buffer(4, voxels + 1), "triangles met, then the next free place of each voxel", use | graph::UseTransfer);
   d.scratch("total", Shape::buffer(4, 2), "entries, low and high word");
@@ -38,6 +46,11 @@ void Triangles::prepare(graph::PrepareContext& context) {
   sort_ = gpu::Pipeline(
       device,
       gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/sort_triangles.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
+  if (context.has("exposure"))
+    exposure_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/exposure.comp",
+                                                               .bindings = std::vector<gpu::BindingType>(13, kB),
+                                                               .pushConstantBytes = 8,
+                                                               .constants = materialConstants(context.traits())});
   scan_ = std::make_unique<gpu::Scan>(device);
 }
 
@@ -69,6 +82,18 @@ void Triangles::record(graph::RecordContext& context) {
     commands.bind(sort_, {first, *context.grown("ids").front()});
     commands.push(voxelCount);
     commands.dispatchItems(voxelCount, 64);
+    if (context.has("exposure")) {
+      commands.barrier();
+      const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
+      commands.bind(exposure_, {b("grid"), b("scene.vertices"), b("scene.indices"), b("grid"), b("scene.triangle_materials"), b("scene.materials"),
+                                b("scene.textures"), b("occupancy"), b("rank"), b("voxels"), first, *context.grown("ids").front(),
+                                *context.grown("exposure").front()});
+      const struct {
+        uint32_t voxelCount, entryCount;
+      } push{voxelCount, static_cast<uint32_t>(context.count("triangle_entries"))};
+      commands.push(push);
+      commands.dispatchItems(push.entryCount, 64);
+    }
   }
 }
 
@@ -81,7 +106,9 @@ void Triangles::stepDone(graph::RecordContext& context) {
     throw Error(ErrorCode::OutOfMemory,
                 "clustered_voxel.triangles: more than 2^32 triangles in voxels; lower triangles.most or voxelize.resolution");
   context.clearGrown("ids");
+  if (context.has("exposure")) context.clearGrown("exposure");
   if (total[0] > 0) context.grow("ids", uint64_t{total[0]} * 4);
+  if (total[0] > 0 && context.has("exposure")) context.grow("exposure", uint64_t{total[0]} * 4);
   context.setCount("triangle_entries", total[0]);
 }
 

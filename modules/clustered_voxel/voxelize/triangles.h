@@ -33,7 +33,7 @@ class Triangles : public graph::Node {
   uint32_t most_ = 64;
   params::Table table_;
   TrianglePass count_, fill_;
-  gpu::Pipeline limit_, sort_;
+  gpu::Pipeline limit_, sort_, exposure_;
   std::unique_ptr<gpu::Scan> scan_;
 };
 

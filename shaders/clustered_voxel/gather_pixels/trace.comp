@@ -41,7 +41,7 @@ layout(push_constant, scalar) uniform Push {
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_cast.glsl"
-#include "clustered_voxel/gather_pixels/near_triangles.glsl"
+#include "shared/voxel_triangles.glsl"
 #include "clustered_voxel/visibility/visibility.h"
 
 // Tangents of n that turn smoothly with it (but at −z).
@@ -51,6 +51,20 @@ void frameOf(vec3 n, out vec3 t, out vec3 b) {
   float c = n.x * n.y * a;
   t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
   b = vec3(c, s + n.y * n.y * a, -n.y);
+}
+
+// The face of `voxel` that stands for surface with this normal, drawn with probability n_k²: a face of another axis is mostly other surface's.
+// kHitBack: it has none.
+uint faceTowards(uint voxel, vec3 n, uint random) {
+  uint mask = planes[voxel].x >> 26;
+  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
+  precise vec3 w = n * n * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
+  precise float two = w.x + w.y;
+  precise float total = two + w.z;
+  precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
+  uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
+  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
+  return total > 0.0 ? face : kHitBack;
 }
 
 const float kNearLift = 1e-3;  // voxels
@@ -101,8 +115,8 @@ void main() {
         voxel = looking ? voxel : 0u;
         float time;
         vec3 normal;
-        if (meetsTriangle(way, cursor, looking, voxel, own, time, normal)) {
-          hit = faceTowards(way, voxel, normal, random);
+        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal)) {
+          hit = faceTowards(voxel, normal, random);
           cursor.time = time;
           looking = going = false;
         }

@@ -1,0 +1,78 @@
+// Rays against the triangles in a voxel: exact, where planes of the mean surface are too coarse. Over shared/traversal.glsl. The includer
+// declares grid, vertices[], indices[], triangleMaterials[], materials[], textures[] (for alpha masks), triangleFirst[] and triangleIds[]
+// (clustered_voxel.triangles), kMasked, and the extensions of shared/texture.glsl.
+#ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
+#define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
+#extension GL_KHR_shader_subgroup_vote : require
+#include "shared/texture.glsl"
+#include "shared/traversal.glsl"
+
+const float kNearSlack = 1e-3;       // voxels: hits this far outside a voxel still count for it
+const float kEdgeSlack = 1e-5;       // closes the seams between triangles
+
+float triangleDot(vec3 a, vec3 b) {
+  precise float sum = a.x * b.x + a.y * b.y;
+  precise float all_ = sum + a.z * b.z;
+  return all_;
+}
+
+// Is the triangle there at these weights? (alpha mask)
+bool isCovered(uint id, vec2 weights) {
+  if (!kMasked) return true;
+  Material material = materials[triangleMaterials[id]];
+  if ((material.flags & kMaterialAlphaMask) == 0u) return true;
+  float alpha = material.alpha;
+  if (material.baseTexture != kNoTexture) {
+    vec2 a = vertices[indices[3u * id]].uvBase;
+    vec2 b = vertices[indices[3u * id + 1u]].uvBase;
+    vec2 c = vertices[indices[3u * id + 2u]].uvBase;
+    alpha *= sampleTextureLevel(textures[material.baseTexture], a + (b - a) * weights.x + (c - a) * weights.y, 0u).a;
+  }
+  return alpha >= material.alphaCutoff;
+}
+
+// Does the ray meet the triangle at least < t < most (voxels)? Only what is the same on every device: no fused operations, a reciprocal of our own.
+bool meetsTriangle(TraversalRay ray, uint id, float least, float most, out float time, out vec3 normal) {
+  vec3 a = toGridSpace(grid, vertices[indices[3u * id]].position) - ray.origin;
+  vec3 e1 = toGridSpace(grid, vertices[indices[3u * id + 1u]].position) - ray.origin - a;
+  vec3 e2 = toGridSpace(grid, vertices[indices[3u * id + 2u]].position) - ray.origin - a;
+  precise vec3 q = vec3(ray.direction.y * e2.z - ray.direction.z * e2.y, ray.direction.z * e2.x - ray.direction.x * e2.z,
+                        ray.direction.x * e2.y - ray.direction.y * e2.x);
+  precise float determinant = triangleDot(e1, q);
+  precise float inverse = (determinant < 0.0 ? -1.0 : 1.0) * preciseReciprocal(max(abs(determinant), 1e-30));
+  precise vec3 r = vec3(a.z * e1.y - a.y * e1.z, a.x * e1.z - a.z * e1.x, a.y * e1.x - a.x * e1.y);
+  precise float b1 = -triangleDot(a, q) * inverse;
+  precise float b2 = triangleDot(ray.direction, r) * inverse;
+  precise float t = triangleDot(e2, r) * inverse;
+  precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+  time = t;
+  normal = across;
+  bool hit = determinant != 0.0 && b1 >= -kEdgeSlack && b2 >= -kEdgeSlack && b1 + b2 <= 1.0 + kEdgeSlack && t > least && t < most;
+  return hit && isCovered(id, vec2(b1, b2));
+}
+
+// The nearest triangle that the ray meets in the cursor's voxel; `own` never counts. `normal` is not of unit length and looks at the ray.
+// Returns whether there is one. Lanes stay together; those without `live` test nothing.
+bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint voxel, uint own, out float time, out vec3 normal) {
+  vec3 exits = traversalExits(ray, cursor.voxel);
+  time = min(exits.x, min(exits.y, exits.z)) + kNearSlack;
+  float least = max(cursor.time - kNearSlack, 0.0);
+  bool found = false;
+  normal = vec3(0.0);
+  uint at = triangleFirst[live ? voxel : 0u];
+  uint end = live ? triangleFirst[voxel + 1u] : at;
+  for (; subgroupAny(at < end); ++at) {
+    bool test = at < end;
+    uint id = test ? triangleIds[at] : 0u;
+    float t;
+    vec3 n;
+    if (meetsTriangle(ray, id, least, time, t, n) && test && id != own) {
+      time = t;
+      found = true;
+      normal = triangleDot(n, ray.direction) > 0.0 ? -n : n;
+    }
+  }
+  return found;
+}
+
+#endif
