@@ -16,7 +16,7 @@ using graph::Extent;
 using graph::Shape;
 using shared::kRowsPerChunk;
 
-constexpr size_t kTraceBindings = 13;
+constexpr size_t kTraceBindings = 21;
 constexpr size_t kDirectionsBinding = 9;
 
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
@@ -43,6 +43,7 @@ Visibility::Visibility()
            params::choice("skip", &skip_, {"clearance", "bricks", "none"},
                           "how rays pass empty space (same result): a byte a voxel, a byte a brick, or voxel by voxel",
                           params::Invalidates::Plan),
+           params::number("triangles", &triangles_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels", params::Invalidates::Plan),
            params::choice("weights", &weights_, {"seen", "area"},
                           "what a face counts for in its cluster's means: how much of it other faces see, or its area",
                           params::Invalidates::Plan),
@@ -61,6 +62,13 @@ void Visibility::declare(graph::Declaration& d) {
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster of each face");
+  for (const char* name : {"triangle_first", "triangle_ids", "pieces", "scene.vertices", "scene.indices", "scene.triangle_materials", "scene.materials",
+                           "scene.textures"}) {
+    graph::Port& port = d.read(name, "triangles of each voxel");
+    port.optional = true;
+    port.unwanted = triangles_ == 0.f;
+    port.unwantedReason = "visibility.triangles=0";
+  }
   const Extent faces = Extent::of("faces");
   d.write("row_start", Shape::buffer(4, faces * (kRowsPerChunk + 1) / kRowsPerChunk + (kRowsPerChunk + 1)),
           "first entry of each row within its chunk");
@@ -104,9 +112,11 @@ void Visibility::prepare(graph::PrepareContext& context) {
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
   if (traversal_ == Traversal::Bresenham) {
-    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 20, {{2, frame}});
+    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}});
   } else {
     const auto hit = static_cast<uint32_t>(hit_);
+    const uint32_t near = context.has("triangle_ids") ? 1 : 0;
+    const uint32_t masked = near != 0 && context.traits().alphaMasked ? 1 : 0;
     if (skip_ == Skip::Clearance) {
       clearanceRows_ = make("clustered_voxel/visibility/clearance_rows.comp", 5, 0, {});
       clearancePlanes_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 1}});
@@ -114,9 +124,9 @@ void Visibility::prepare(graph::PrepareContext& context) {
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
     trace_ =
-        make("clustered_voxel/visibility/trace.comp", kTraceBindings, 20, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}});
+        make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
     if (skip_ == Skip::Clearance)
-      traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 20, {{0, 1}, {1, hit}, {2, frame}});
+      traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24, {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
   }
   std::vector<uint32_t> directions = makeDirections(rays_);
   directions.resize(shared::kShiftCount * shared::kMaxRays);
@@ -252,14 +262,21 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
     uint32_t firstFace, rowCount, rayCount;
     float nearDistance;
     uint32_t voxelCount;
-  } tracePush{firstFace, rows, rays_, near_, static_cast<uint32_t>(context.count("voxels"))};
+    float triangles;
+  } tracePush{firstFace, rows, rays_, near_, static_cast<uint32_t>(context.count("voxels")), triangles_};
+  const bool hasTriangles = context.has("triangle_ids");
+  std::vector<const gpu::Buffer*> ids;
+  if (hasTriangles) ids = context.grown("triangle_ids");
+  const auto optional = [&](const char* name) -> const gpu::Buffer& { return hasTriangles ? context.buffer(name) : context.buffer("grid"); };
   // An absent clearance is never read.
   const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
   const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
   commands.bind(bricks ? traceBricks_ : trace_,
                 {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("voxels"),
                  context.buffer("distance"), context.buffer("planes"), context.buffer("first"), context.buffer("faces"), clearance,
-                 directions_, order, hits, context.buffer("plane_extras")});
+                 directions_, order, hits, context.buffer("plane_extras"), optional("triangle_first"), ids.empty() ? context.buffer("grid") : *ids.front(),
+                 optional("scene.vertices"), optional("scene.indices"), optional("scene.triangle_materials"), optional("scene.materials"),
+                 optional("scene.textures"), ids.empty() ? context.buffer("grid") : *context.grown("pieces").front()});
   commands.push(tracePush);
   const uint32_t lanes = (rows + 63) / 64 * 64;
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);

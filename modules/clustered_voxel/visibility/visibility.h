@@ -68,6 +68,7 @@ class Visibility : public graph::Node {
   Hit hit_ = Hit::Plane;
   Skip skip_ = Skip::Clearance;
   float near_ = 8.f;
+  float triangles_ = 2.f;
   params::Table table_;
 
   gpu::Pipeline countPlanes_, planes_, clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, trace_, traceBricks_, merge_, fill_;

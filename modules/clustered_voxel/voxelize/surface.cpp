@@ -41,7 +41,7 @@ void Surface::declare(graph::Declaration& d) {
   d.read("voxels", "packed coordinate of each voxel");
   d.read("mask", "faces of each voxel", use);
   d.read("first", "first face of each voxel", use);
-  for (const char* name : {"triangle_first", "triangle_ids", "exposure"}) {
+  for (const char* name : {"triangle_first", "triangle_ids", "pieces"}) {
     graph::Port& port = d.read(name, "triangles of each voxel, and how much of them is seen", use);
     port.optional = true;
     port.unwanted = weights_ != Weights::Seen;
@@ -71,7 +71,7 @@ void Surface::prepare(graph::PrepareContext& context) {
   wantsEmission_ = context.has("emission");
   const uint32_t heuristic = normals_ == Normals::Heuristic ? 1 : 0;
   std::vector<gpu::SpecializationConstant> constants = materialConstants(context.traits());
-  exposed_ = context.has("exposure");
+  exposed_ = context.has("pieces");
   constants.push_back({3, heuristic});
   constants.push_back({4, exposed_ ? 1u : 0u});
   pass_.prepare(device, method_, kType, "surface", 24, constants);
@@ -117,7 +117,7 @@ void Surface::sumPieces(graph::RecordContext& context) {
   std::vector<const gpu::Buffer*> ids, exposure;
   if (exposed_) {
     ids = context.grown("triangle_ids");
-    exposure = context.grown("exposure");
+    exposure = context.grown("pieces");
   }
   const std::array<gpu::BoundResource, 20> rest = {
       context.buffer("scene.triangle_materials"),

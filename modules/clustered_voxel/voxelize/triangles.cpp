@@ -11,6 +11,7 @@ using graph::Shape;
 
 Triangles::Triangles()
     : table_({TrianglePass::methodParam(&method_),
+              params::flag("exposure", &exposure_, "find out how much of each piece is seen", params::Invalidates::Plan),
               params::number("most", &most_, {1, 1024}, "voxels met by more triangles have no list", params::Invalidates::Rerun)}) {}
 
 void Triangles::declare(graph::Declaration& d) {
@@ -26,8 +27,8 @@ void Triangles::declare(graph::Declaration& d) {
   const Extent voxels = Extent::of("voxels");
   d.write("first", Shape::buffer(4, voxels + 1), "triangles in the lists of the voxels before, then the total", use | graph::UseTransfer);
   d.write("ids", Shape::buffer(4, Extent::of("triangle_entries")), "triangle ids, ascending within a voxel").growable = true;
-  graph::Port& exposure = d.write("exposure", Shape::buffer(4, Extent::of("triangle_entries")), "rays of eight that see far, front | back << 8");
-  exposure.growable = exposure.optional = true;
+  graph::Port& pieces = d.write("pieces", Shape::buffer(8, Extent::of("triangle_entries")), "middle of each piece, its area, and rays of eight that see far");
+  pieces.growable = pieces.optional = true;
   d.publishCount("triangle_entries", "", 0);
   d.scratch("next", Shape::buffer(4, voxels + 1), "triangles met, then the next free place of each voxel", use | graph::UseTransfer);
   d.scratch("total", Shape::buffer(4, 2), "entries, low and high word");
@@ -46,11 +47,13 @@ void Triangles::prepare(graph::PrepareContext& context) {
   sort_ = gpu::Pipeline(
       device,
       gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/sort_triangles.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
-  if (context.has("exposure"))
-    exposure_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/exposure.comp",
+  std::vector<gpu::SpecializationConstant> constants = materialConstants(context.traits());
+  constants.push_back({3, exposure_ ? 1u : 0u});
+  if (context.has("pieces"))
+    pieces_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/exposure.comp",
                                                                .bindings = std::vector<gpu::BindingType>(13, kB),
                                                                .pushConstantBytes = 8,
-                                                               .constants = materialConstants(context.traits())});
+                                                               .constants = constants});
   scan_ = std::make_unique<gpu::Scan>(device);
 }
 
@@ -82,12 +85,12 @@ void Triangles::record(graph::RecordContext& context) {
     commands.bind(sort_, {first, *context.grown("ids").front()});
     commands.push(voxelCount);
     commands.dispatchItems(voxelCount, 64);
-    if (context.has("exposure")) {
+    if (context.has("pieces")) {
       commands.barrier();
       const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
-      commands.bind(exposure_, {b("grid"), b("scene.vertices"), b("scene.indices"), b("grid"), b("scene.triangle_materials"), b("scene.materials"),
+      commands.bind(pieces_, {b("grid"), b("scene.vertices"), b("scene.indices"), b("grid"), b("scene.triangle_materials"), b("scene.materials"),
                                 b("scene.textures"), b("occupancy"), b("rank"), b("voxels"), first, *context.grown("ids").front(),
-                                *context.grown("exposure").front()});
+                                *context.grown("pieces").front()});
       const struct {
         uint32_t voxelCount, entryCount;
       } push{voxelCount, static_cast<uint32_t>(context.count("triangle_entries"))};
@@ -106,9 +109,9 @@ void Triangles::stepDone(graph::RecordContext& context) {
     throw Error(ErrorCode::OutOfMemory,
                 "clustered_voxel.triangles: more than 2^32 triangles in voxels; lower triangles.most or voxelize.resolution");
   context.clearGrown("ids");
-  if (context.has("exposure")) context.clearGrown("exposure");
+  if (context.has("pieces")) context.clearGrown("pieces");
   if (total[0] > 0) context.grow("ids", uint64_t{total[0]} * 4);
-  if (total[0] > 0 && context.has("exposure")) context.grow("exposure", uint64_t{total[0]} * 4);
+  if (total[0] > 0 && context.has("pieces")) context.grow("pieces", uint64_t{total[0]} * 8);
   context.setCount("triangle_entries", total[0]);
 }
 

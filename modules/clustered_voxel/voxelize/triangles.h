@@ -31,9 +31,10 @@ class Triangles : public graph::Node {
  private:
   TrianglePass::Method method_ = TrianglePass::Method::Auto;
   uint32_t most_ = 64;
+  bool exposure_ = true;
   params::Table table_;
   TrianglePass count_, fill_;
-  gpu::Pipeline limit_, sort_, exposure_;
+  gpu::Pipeline limit_, sort_, pieces_;
   std::unique_ptr<gpu::Scan> scan_;
 };
 

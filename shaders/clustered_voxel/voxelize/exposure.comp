@@ -14,7 +14,8 @@ layout(set = 0, binding = 8, scalar) readonly buffer Rank { uint brickRank[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer Voxels { uint voxels[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
 layout(set = 0, binding = 11, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
-layout(set = 0, binding = 12, scalar) writeonly buffer Exposure { uint exposure[]; };  // rays seen: front | back << 8
+layout(set = 0, binding = 12, scalar) writeonly buffer Pieces { uvec2 pieces[]; };  // shared/voxel_triangles.glsl
+layout(constant_id = 3) const bool kExposed = true;
 layout(push_constant, scalar) uniform Push {
   uint voxelCount;
   uint entryCount;
@@ -98,12 +99,16 @@ void main() {
   uvec3 voxel = unpackVoxel(voxels[voxelOfEntry(entry)]);
   Triangle t = loadTriangle(triangleIds[entry]);
   Piece piece = measurePiece(t, turn(ivec3(voxel), t.axis));
-  uint seen = 0u;
+  uvec2 packed = uvec2(0u);
   if (piece.area > 0.0) {
     vec3 position = turnBack(piece.middle, t.axis);
     vec3 n = turnBack(piece.normal, t.axis);
-    seen = exposureOf(t.id, voxel, position, n);
-    if (reflectsOnBack(triangleMaterials[t.id])) seen |= exposureOf(t.id, voxel, position, -n) << 8;
+    uint front = kExposureRays, back = kExposureRays;
+    if (kExposed) {
+      front = exposureOf(t.id, voxel, position, n);
+      back = reflectsOnBack(triangleMaterials[t.id]) ? exposureOf(t.id, voxel, position, -n) : 0u;
+    }
+    packed = uvec2(encodePosition(position), packHalf2x16(vec2(min(piece.area, 60000.0), 0.0)) | front << 16 | back << 24);
   }
-  exposure[entry] = seen;
+  pieces[entry] = packed;
 }

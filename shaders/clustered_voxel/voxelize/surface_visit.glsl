@@ -22,7 +22,7 @@ layout(set = 0, binding = 19, scalar) buffer Footprints { uint footprints[]; }; 
 
 layout(set = 0, binding = 20, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
 layout(set = 0, binding = 21, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
-layout(set = 0, binding = 23, scalar) readonly buffer Exposure { uint exposures[]; };
+layout(set = 0, binding = 23, scalar) readonly buffer Pieces { uvec2 pieces[]; };
 layout(set = 0, binding = 22, scalar) buffer BackAreaSums { uint backAreaSums[]; };  // 2 words a face: Σ w of the backs of one-sided surfaces
 
 #include "clustered_voxel/voxelize/emission_scale.glsl"
@@ -71,7 +71,7 @@ vec2 exposureOf(uint voxel, uint triangle) {
     else
       end = middle;
   }
-  return clamp(vec2(uvec2(exposures[low], exposures[low] >> 8) & 0xffu) * kExposureScale, vec2(kLeastExposure), vec2(1.0));
+  return clamp(vec2(uvec2(pieces[low].y >> 16, pieces[low].y >> 24) & 0xffu) * kExposureScale, vec2(kLeastExposure), vec2(1.0));
 }
 
 // Abramowitz and Stegun 4.4.45, error below 7e-5 rad.
