@@ -53,12 +53,14 @@ bool meetsTriangle(TraversalRay ray, uint id, float least, float most, out float
 
 // The nearest triangle that the ray meets in the cursor's voxel; `own` never counts. `normal` is not of unit length and looks at the ray.
 // Returns whether there is one. Lanes stay together; those without `live` test nothing.
-bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint voxel, uint own, out float time, out vec3 normal) {
+bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint voxel, uint own, out float time, out vec3 normal,
+                     out uint triangle) {
   vec3 exits = traversalExits(ray, cursor.voxel);
   time = min(exits.x, min(exits.y, exits.z)) + kNearSlack;
   float least = max(cursor.time - kNearSlack, 0.0);
   bool found = false;
   normal = vec3(0.0);
+  triangle = 0u;
   uint at = triangleFirst[live ? voxel : 0u];
   uint end = live ? triangleFirst[voxel + 1u] : at;
   for (; subgroupAny(at < end); ++at) {
@@ -69,6 +71,7 @@ bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint v
     if (meetsTriangle(ray, id, least, time, t, n) && test && id != own) {
       time = t;
       found = true;
+      triangle = id;
       normal = triangleDot(n, ray.direction) > 0.0 ? -n : n;
     }
   }

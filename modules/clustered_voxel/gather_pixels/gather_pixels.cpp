@@ -14,8 +14,8 @@ namespace {
 constexpr uint32_t kBlock = 4;  // pixels a side of an interleaving block; the shaders know it too
 }
 
-std::vector<glm::vec4> cosineDirections(uint32_t count) {
-  std::vector<glm::vec4> out;
+std::vector<glm::vec2> sobolPoints(uint32_t count) {
+  std::vector<glm::vec2> out;
   out.reserve(count);
   for (uint32_t i = 0; i < count; ++i) {
     uint32_t a = 0, b = 0;
@@ -24,9 +24,7 @@ std::vector<glm::vec4> cosineDirections(uint32_t count) {
         a ^= v;
         b ^= w;
       }
-    const double u = (a + 0.5) / 4294967296.0, phi = 6.283185307179586 * ((b + 0.5) / 4294967296.0);
-    const double r = std::sqrt(u);
-    out.emplace_back(r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - u), 0.0);
+    out.emplace_back(static_cast<float>((a + 0.5) / 4294967296.0), static_cast<float>((b + 0.5) / 4294967296.0));
   }
   return out;
 }
@@ -39,6 +37,7 @@ GatherPixels::GatherPixels()
               params::swept(params::number("near", &near_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels; 0: voxels only",
                                            params::Invalidates::Plan),
                             {"0", "2", "4", "8"}, "4096"),
+              params::flag("shadow", &shadow_, "hits on near triangles look their direct light up in the shadow maps", params::Invalidates::Plan),
               params::swept(params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
                                            params::Invalidates::Plan),
                             {"0", "1", "2"}, "0")}) {}
@@ -53,6 +52,8 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.read("plane_extras", "where the planes of a voxel after its first are");
   d.read("clearance", "half-size of the empty cube around each voxel").optional = true;
   d.read("face_radiosity", "reflected radiosity, W/m²");
+  // Emitters shine from many samples: too many to look up one by one.
+  const bool shadow = near_ > 0.f && shadow_ && d.traits.emissiveTriangleCount == 0 && d.traits.punctualLightCount() > 0;
   const bool masked = near_ > 0.f && d.traits.alphaMasked;
   const auto readNear = [&d](const char* name, const char* meaning, bool wanted, const char* reason) {
     graph::Port& port = d.read(name, meaning);
@@ -66,8 +67,14 @@ void GatherPixels::declare(graph::Declaration& d) {
   readNear("triangle_ids", "triangles of each voxel", near_ > 0.f, kNoTriangles);
   readNear("scene.vertices", "Vertex", near_ > 0.f, kNoTriangles);
   readNear("scene.indices", "three a triangle", near_ > 0.f, kNoTriangles);
-  readNear("scene.triangle_materials", "one a triangle", masked, "no near triangle has an alpha mask");
-  readNear("scene.materials", "Material", masked, "no near triangle has an alpha mask");
+  constexpr const char* kNoShadow = "gather_pixels.near and shadow are off, or emitters light the scene: hits take their face's direct light";
+  readNear("shadow_depth", "depth of the nearest surface from each light", shadow, kNoShadow);
+  readNear("shadow_triangle", "its id + 1", shadow, kNoShadow);
+  readNear("face_irradiance", "E_dir of each face, W/m²", shadow, kNoShadow);
+  readNear("scene.lights", "Light", shadow, kNoShadow);
+  readNear("scene.shadow_views", "ShadowView", shadow, kNoShadow);
+  readNear("scene.triangle_materials", "one a triangle", masked || shadow, "no near triangle has an alpha mask");
+  readNear("scene.materials", "Material", masked || shadow, "no near triangle has an alpha mask");
   readNear("scene.textures", "Texture", masked, "no near triangle has an alpha mask");
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   d.scratch("raw", image, "E_indirect from each pixel's own rays");
@@ -78,18 +85,23 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
   constexpr auto kI = BindingType::StorageImage;
   gpu::Device& device = context.device();
-  const std::vector<glm::vec4> directions = cosineDirections(kBlock * kBlock * rays_);
-  directions_ = gpu::Buffer(device, "gather_pixels.directions", directions.size() * sizeof(glm::vec4));
+  const std::vector<glm::vec2> directions = sobolPoints(kBlock * kBlock * rays_);
+  directions_ = gpu::Buffer(device, "gather_pixels.directions", directions.size() * sizeof(glm::vec2));
   gpu::upload(device, directions_, directions);
   hasTriangles_ = context.has("triangle_ids");
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
-  std::vector<BindingType> bindings(23, kB);
+  hasShadow_ = context.has("shadow_depth");
+  std::vector<BindingType> bindings(28, kB);
+  for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
   for (const size_t image : {6, 7, 11, 15}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
                                                           .bindings = bindings,
-                                                          .pushConstantBytes = 20,
-                                                          .constants = {{0, skip}, {1, hasTriangles_ ? 1u : 0u}, {2, isMasked_ ? 1u : 0u}}});
+                                                          .pushConstantBytes = 24,
+                                                          .constants = {{0, skip},
+                                                                        {1, hasTriangles_ ? 1u : 0u},
+                                                                        {2, isMasked_ ? 1u : 0u},
+                                                                        {3, hasShadow_ ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -106,7 +118,9 @@ void GatherPixels::record(graph::RecordContext& context) {
   struct {
     uint32_t width, height, rays, voxelCount;
     float near;
-  } push{raw.info().width, raw.info().height, rays_, static_cast<uint32_t>(context.count("voxels")), near_};
+    uint32_t lightCount;
+  } push{raw.info().width, raw.info().height, rays_, static_cast<uint32_t>(context.count("voxels")), near_,
+         hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u};
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
   std::vector<const gpu::Buffer*> grown;
   if (context.has("clearance")) grown = context.grown("clearance");
@@ -115,13 +129,15 @@ void GatherPixels::record(graph::RecordContext& context) {
   std::vector<const gpu::Buffer*> ids;
   if (hasTriangles_) ids = context.grown("triangle_ids");
   const auto optional = [&](const char* name, bool present) -> const gpu::Buffer& { return present ? context.buffer(name) : distance; };
+  const auto map = [&](const char* name) -> const gpu::Image& { return hasShadow_ ? context.image(name) : absent_; };
   bindStructure(context, grown.empty() ? traceBricks_ : trace_,
                 {position, normal, distance, context.buffer("face_radiosity"), directions_, raw, context.buffer("planes"),
                  context.buffer("plane_extras"), grown.empty() ? distance : *grown.front(),
                  hasTriangles_ ? context.image("triangle") : raw, optional("triangle_first", hasTriangles_),
                  ids.empty() ? distance : *ids.front(), optional("scene.vertices", hasTriangles_), optional("scene.indices", hasTriangles_),
-                 optional("scene.triangle_materials", isMasked_), optional("scene.materials", isMasked_),
-                 optional("scene.textures", isMasked_)});
+                 optional("scene.triangle_materials", isMasked_ || hasShadow_), optional("scene.materials", isMasked_ || hasShadow_),
+                 optional("scene.textures", isMasked_), optional("scene.lights", hasShadow_), optional("scene.shadow_views", hasShadow_),
+                 map("shadow_depth"), map("shadow_triangle"), optional("face_irradiance", hasShadow_)});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);

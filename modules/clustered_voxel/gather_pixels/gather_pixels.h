@@ -30,13 +30,15 @@ class GatherPixels : public graph::Node {
   uint32_t rays_ = 16;
   uint32_t smooth_ = 1;
   float near_ = 4.f;
-  bool hasTriangles_ = false, isMasked_ = false;
+  bool shadow_ = true;
+  bool hasTriangles_ = false, isMasked_ = false, hasShadow_ = false;
   params::Table table_;
+  const gpu::Image absent_;  ///< bound where the specialized shader reads nothing
   gpu::Buffer directions_;
   gpu::Pipeline trace_, traceBricks_, filter_;
 };
 
-/// Cosine-weighted directions about +z: point i of the (0,2)-sequence of Sobol, so that any aligned power-of-two run is well spread.
-std::vector<glm::vec4> cosineDirections(uint32_t count);
+/// The first points of the (0,2)-sequence of Sobol: any aligned power-of-two run is well spread over the unit square.
+std::vector<glm::vec2> sobolPoints(uint32_t count);
 
 }  // namespace radivox::clustered_voxel

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 // One lane a pixel: the mean radiosity along its share of the block's directions. See modules/clustered_voxel/gather_pixels/gather_pixels.h.
@@ -9,6 +10,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kSkip = 2;
 layout(constant_id = 1) const bool kNear = false;    // the first voxels of a ray are tested by their triangles
 layout(constant_id = 2) const bool kMasked = false;  // some material has an alpha mask
+layout(constant_id = 3) const bool kShadow = false;  // hits on near triangles look their direct light up
 
 #define RADIVOX_BIND_DISTANCE 8
 #define RADIVOX_BIND_CAST_FIRST 4
@@ -21,7 +23,7 @@ layout(constant_id = 2) const bool kMasked = false;  // some material has an alp
 layout(set = 0, binding = 6, rgba32f) readonly uniform image2D positionImage;
 layout(set = 0, binding = 7, rgba32f) readonly uniform image2D normalImage;
 layout(set = 0, binding = 9, scalar) readonly buffer RadiosityBuffer { vec3 faceRadiosity[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer DirectionBuffer { vec4 directions[]; };
+layout(set = 0, binding = 10, scalar) readonly buffer DirectionBuffer { vec2 directions[]; };  // of the unit square
 layout(set = 0, binding = 11, rgba32f) writeonly uniform image2D rawImage;
 #include "shared/scene.h"
 layout(set = 0, binding = 15, r32ui) readonly uniform uimage2D triangleImage;
@@ -32,16 +34,39 @@ layout(set = 0, binding = 19, scalar) readonly buffer Indices { uint indices[]; 
 layout(set = 0, binding = 20, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
 layout(set = 0, binding = 21, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 22, scalar) readonly buffer Textures { Texture textures[]; };
+layout(set = 0, binding = 23, scalar) readonly buffer Lights { Light lights[]; };
+layout(set = 0, binding = 24, scalar) readonly buffer ShadowViews { ShadowView shadowViews[]; };
+layout(set = 0, binding = 25) uniform sampler2DArray shadowDepth;
+layout(set = 0, binding = 26) uniform usampler2DArray shadowTriangle;
+layout(set = 0, binding = 27, scalar) readonly buffer FaceIrradiance { vec3 faceIrradiance[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
   uint rays;
   uint voxelCount;
   float nearDistance;  // voxels
+  uint lightCount;
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_cast.glsl"
+#include "shared/light.glsl"
+#include "shared/shadow_lookup.glsl"
 #include "shared/voxel_triangles.glsl"
+
+// Direct irradiance at a point of a triangle, as one texel of each shadow map has it. n: unit, on the side that is looked at.
+vec3 directIrradiance(vec3 p, vec3 n, uint triangle) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < lightCount; ++i) {
+    vec3 unshadowed = lightIrradiance(lights[i], p, n);
+    if (!(max(unshadowed.x, max(unshadowed.y, unshadowed.z)) > 0.0)) continue;
+    Lookup l;
+    uint state = kLit, id;
+    vec3 occluder;
+    if (prepareLookup(lights[i], p, l)) state = classifyTexel(l, ivec2(floor(l.centre)), p, n, triangle, 2.0 * l.texel, id, occluder);
+    if (state == kLit || state == kBeside) sum += unshadowed;
+  }
+  return sum;
+}
 #include "clustered_voxel/visibility/visibility.h"
 
 // Tangents of n that turn smoothly with it (but at −z).
@@ -94,16 +119,23 @@ void main() {
   vec3 t, b;
   frameOf(n, t, b);
 
+  // Every block has a shift of its own: the same directions everywhere would miss the same things everywhere.
+  uint hashed = hashBits(block + 0x68bc21ebu);
+  vec2 shift = vec2(uvec2(hashed, hashBits(hashed)) >> 8) * (1.0 / 16777216.0);
+
   vec4 sum = vec4(0.0);
   for (uint ray = 0u; subgroupAny(ray < end); ++ray) {
     bool busy = ray < end;
-    vec3 local = directions[place * rays + min(ray, rays - 1u)].xyz;
-    TraversalRay way = makeTraversalRay(origin, t * local.x + b * local.y + n * local.z);
+    vec2 square = fract(directions[place * rays + min(ray, rays - 1u)] + shift);
+    float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
+    TraversalRay way = makeTraversalRay(origin, (t * cos(turn) + b * sin(turn)) * radius + n * sqrt(1.0 - square.x));
     TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
     uint random = rayRandom(i, ray);
     uint hit = kHitNothing;
     bool atStart = true;
     bool going = busy;
+    uint nearTriangle = kNone;
+    vec3 nearNormal = vec3(0.0);
     if (kNear) {
       bool looking = busy;
       while (subgroupAny(looking)) {
@@ -115,9 +147,13 @@ void main() {
         voxel = looking ? voxel : 0u;
         float time;
         vec3 normal;
-        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal)) {
+        uint triangle;
+        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal, triangle)) {
+          normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
           hit = faceTowards(voxel, normal, random);
           cursor.time = time;
+          nearTriangle = triangle;
+          nearNormal = normal;
           looking = going = false;
         }
         bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];
@@ -157,6 +193,15 @@ void main() {
     }
     bool isFace = busy && hit < kHitBack;
     vec3 radiosity = faceRadiosity[isFace ? hit : 0u];
+    // Close by, a voxel is a coarse patch of light and shadow: what is sunlit at the hit itself counts.
+    bool exact = isFace && nearTriangle != kNone;
+    if (kShadow && subgroupAny(exact)) {
+      if (exact) {
+        vec3 at = position.xyz + (kNearLift * n + cursor.time * way.direction) * grid.h;
+        vec3 change = directIrradiance(at, nearNormal, nearTriangle) - faceIrradiance[hit];
+        radiosity = max(radiosity + decodeAlbedo(faces[hit].albedo) * change, vec3(0.0));
+      }
+    }
     sum.xyz += isFace ? radiosity : vec3(0.0);
     sum.w += busy && hit == kHitNothing ? 1.0 : 0.0;
   }

@@ -174,7 +174,8 @@ void main() {
         voxel = looking ? voxel : 0u;
         float time;
         vec3 normal;
-        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal)) {
+        uint triangle;
+        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal, triangle)) {
           hit = faceTowards(voxel, normal, random);
           cursor.time = time;
           looking = going = false;
