@@ -37,7 +37,8 @@ GatherPixels::GatherPixels()
               params::swept(params::number("near", &near_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels; 0: voxels only",
                                            params::Invalidates::Plan),
                             {"0", "2", "4", "8"}, "4096"),
-              params::flag("shadow", &shadow_, "hits on near triangles look their direct light up in the shadow maps", params::Invalidates::Plan),
+              params::flag("shadow", &shadow_, "hits on near triangles look their direct light up in the shadow maps",
+                           params::Invalidates::Plan),
               params::swept(params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
                                            params::Invalidates::Plan),
                             {"0", "1", "2"}, "0")}) {}
@@ -67,7 +68,8 @@ void GatherPixels::declare(graph::Declaration& d) {
   readNear("triangle_ids", "triangles of each voxel", near_ > 0.f, kNoTriangles);
   readNear("scene.vertices", "Vertex", near_ > 0.f, kNoTriangles);
   readNear("scene.indices", "three a triangle", near_ > 0.f, kNoTriangles);
-  constexpr const char* kNoShadow = "gather_pixels.near and shadow are off, or emitters light the scene: hits take their face's direct light";
+  constexpr const char* kNoShadow =
+      "gather_pixels.near and shadow are off, or emitters light the scene: hits take their face's direct light";
   readNear("shadow_depth", "depth of the nearest surface from each light", shadow, kNoShadow);
   readNear("shadow_triangle", "its id + 1", shadow, kNoShadow);
   readNear("face_irradiance", "E_dir of each face, W/m²", shadow, kNoShadow);
@@ -95,13 +97,12 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
   for (const size_t image : {6, 7, 11, 15}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
-    return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
-                                                          .bindings = bindings,
-                                                          .pushConstantBytes = 24,
-                                                          .constants = {{0, skip},
-                                                                        {1, hasTriangles_ ? 1u : 0u},
-                                                                        {2, isMasked_ ? 1u : 0u},
-                                                                        {3, hasShadow_ ? 1u : 0u}}});
+    return gpu::Pipeline(device,
+                         gpu::ComputePipelineInfo{
+                             .shader = "clustered_voxel/gather_pixels/trace.comp",
+                             .bindings = bindings,
+                             .pushConstantBytes = 24,
+                             .constants = {{0, skip}, {1, hasTriangles_ ? 1u : 0u}, {2, isMasked_ ? 1u : 0u}, {3, hasShadow_ ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -119,7 +120,11 @@ void GatherPixels::record(graph::RecordContext& context) {
     uint32_t width, height, rays, voxelCount;
     float near;
     uint32_t lightCount;
-  } push{raw.info().width, raw.info().height, rays_, static_cast<uint32_t>(context.count("voxels")), near_,
+  } push{raw.info().width,
+         raw.info().height,
+         rays_,
+         static_cast<uint32_t>(context.count("voxels")),
+         near_,
          hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u};
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
   std::vector<const gpu::Buffer*> grown;
@@ -131,13 +136,28 @@ void GatherPixels::record(graph::RecordContext& context) {
   const auto optional = [&](const char* name, bool present) -> const gpu::Buffer& { return present ? context.buffer(name) : distance; };
   const auto map = [&](const char* name) -> const gpu::Image& { return hasShadow_ ? context.image(name) : absent_; };
   bindStructure(context, grown.empty() ? traceBricks_ : trace_,
-                {position, normal, distance, context.buffer("face_radiosity"), directions_, raw, context.buffer("planes"),
-                 context.buffer("plane_extras"), grown.empty() ? distance : *grown.front(),
-                 hasTriangles_ ? context.image("triangle") : raw, optional("triangle_first", hasTriangles_),
-                 ids.empty() ? distance : *ids.front(), optional("scene.vertices", hasTriangles_), optional("scene.indices", hasTriangles_),
-                 optional("scene.triangle_materials", isMasked_ || hasShadow_), optional("scene.materials", isMasked_ || hasShadow_),
-                 optional("scene.textures", isMasked_), optional("scene.lights", hasShadow_), optional("scene.shadow_views", hasShadow_),
-                 map("shadow_depth"), map("shadow_triangle"), optional("face_irradiance", hasShadow_)});
+                {position,
+                 normal,
+                 distance,
+                 context.buffer("face_radiosity"),
+                 directions_,
+                 raw,
+                 context.buffer("planes"),
+                 context.buffer("plane_extras"),
+                 grown.empty() ? distance : *grown.front(),
+                 hasTriangles_ ? context.image("triangle") : raw,
+                 optional("triangle_first", hasTriangles_),
+                 ids.empty() ? distance : *ids.front(),
+                 optional("scene.vertices", hasTriangles_),
+                 optional("scene.indices", hasTriangles_),
+                 optional("scene.triangle_materials", isMasked_ || hasShadow_),
+                 optional("scene.materials", isMasked_ || hasShadow_),
+                 optional("scene.textures", isMasked_),
+                 optional("scene.lights", hasShadow_),
+                 optional("scene.shadow_views", hasShadow_),
+                 map("shadow_depth"),
+                 map("shadow_triangle"),
+                 optional("face_irradiance", hasShadow_)});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);

@@ -29,7 +29,7 @@ class GatherPixels : public graph::Node {
  private:
   uint32_t rays_ = 16;
   uint32_t smooth_ = 1;
-  float near_ = 4.f;
+  float near_ = 2.f;
   bool shadow_ = true;
   bool hasTriangles_ = false, isMasked_ = false, hasShadow_ = false;
   params::Table table_;

@@ -43,7 +43,8 @@ Visibility::Visibility()
            params::choice("skip", &skip_, {"clearance", "bricks", "none"},
                           "how rays pass empty space (same result): a byte a voxel, a byte a brick, or voxel by voxel",
                           params::Invalidates::Plan),
-           params::number("triangles", &triangles_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels", params::Invalidates::Plan),
+           params::number("triangles", &triangles_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels",
+                          params::Invalidates::Plan),
            params::choice("weights", &weights_, {"seen", "area"},
                           "what a face counts for in its cluster's means: how much of it other faces see, or its area",
                           params::Invalidates::Plan),
@@ -62,8 +63,8 @@ void Visibility::declare(graph::Declaration& d) {
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster of each face");
-  for (const char* name : {"triangle_first", "triangle_ids", "pieces", "scene.vertices", "scene.indices", "scene.triangle_materials", "scene.materials",
-                           "scene.textures"}) {
+  for (const char* name : {"triangle_first", "triangle_ids", "pieces", "scene.vertices", "scene.indices", "scene.triangle_materials",
+                           "scene.materials", "scene.textures"}) {
     graph::Port& port = d.read(name, "triangles of each voxel");
     port.optional = true;
     port.unwanted = triangles_ == 0.f;
@@ -123,10 +124,11 @@ void Visibility::prepare(graph::PrepareContext& context) {
       clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
-    trace_ =
-        make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24, {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
+    trace_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
+                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
     if (skip_ == Skip::Clearance)
-      traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24, {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
+      traceBricks_ =
+          make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24, {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
   }
   std::vector<uint32_t> directions = makeDirections(rays_);
   directions.resize(shared::kShiftCount * shared::kMaxRays);
@@ -267,16 +269,33 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   const bool hasTriangles = context.has("triangle_ids");
   std::vector<const gpu::Buffer*> ids;
   if (hasTriangles) ids = context.grown("triangle_ids");
-  const auto optional = [&](const char* name) -> const gpu::Buffer& { return hasTriangles ? context.buffer(name) : context.buffer("grid"); };
+  const auto optional = [&](const char* name) -> const gpu::Buffer& {
+    return hasTriangles ? context.buffer(name) : context.buffer("grid");
+  };
   // An absent clearance is never read.
   const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
   const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
-  commands.bind(bricks ? traceBricks_ : trace_,
-                {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("voxels"),
-                 context.buffer("distance"), context.buffer("planes"), context.buffer("first"), context.buffer("faces"), clearance,
-                 directions_, order, hits, context.buffer("plane_extras"), optional("triangle_first"), ids.empty() ? context.buffer("grid") : *ids.front(),
-                 optional("scene.vertices"), optional("scene.indices"), optional("scene.triangle_materials"), optional("scene.materials"),
-                 optional("scene.textures"), ids.empty() ? context.buffer("grid") : *context.grown("pieces").front()});
+  commands.bind(bricks ? traceBricks_ : trace_, {context.buffer("grid"),
+                                                 context.buffer("occupancy"),
+                                                 context.buffer("rank"),
+                                                 context.buffer("voxels"),
+                                                 context.buffer("distance"),
+                                                 context.buffer("planes"),
+                                                 context.buffer("first"),
+                                                 context.buffer("faces"),
+                                                 clearance,
+                                                 directions_,
+                                                 order,
+                                                 hits,
+                                                 context.buffer("plane_extras"),
+                                                 optional("triangle_first"),
+                                                 ids.empty() ? context.buffer("grid") : *ids.front(),
+                                                 optional("scene.vertices"),
+                                                 optional("scene.indices"),
+                                                 optional("scene.triangle_materials"),
+                                                 optional("scene.materials"),
+                                                 optional("scene.textures"),
+                                                 ids.empty() ? context.buffer("grid") : *context.grown("pieces").front()});
   commands.push(tracePush);
   const uint32_t lanes = (rows + 63) / 64 * 64;
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);

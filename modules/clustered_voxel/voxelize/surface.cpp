@@ -23,9 +23,6 @@ struct Check {
 Surface::Surface()
     : table_({params::choice("normals", &normals_, {"mean", "heuristic"},
                              "mean: area-weighted per face; heuristic: the paper's, one axis a voxel", params::Invalidates::Plan),
-              params::choice("weights", &weights_, {"seen", "area"},
-                             "seen: what other surface hides within a voxel counts less in a face (needs triangles); area: all counts alike",
-                             params::Invalidates::Plan),
               TrianglePass::methodParam(&method_)}) {}
 
 void Surface::declare(graph::Declaration& d) {
@@ -41,12 +38,6 @@ void Surface::declare(graph::Declaration& d) {
   d.read("voxels", "packed coordinate of each voxel");
   d.read("mask", "faces of each voxel", use);
   d.read("first", "first face of each voxel", use);
-  for (const char* name : {"triangle_first", "triangle_ids", "pieces"}) {
-    graph::Port& port = d.read(name, "triangles of each voxel, and how much of them is seen", use);
-    port.optional = true;
-    port.unwanted = weights_ != Weights::Seen;
-    port.unwantedReason = "surface.weights=area";
-  }
   const Extent voxels = Extent::of("voxels"), faces = Extent::of("faces");
   d.write("faces", Shape::buffer(sizeof(shared::Face), faces), "Face");
   d.write("emission", Shape::buffer(12, faces), "mean B_e of each face, W/m²; 0: dark").optional = true;
@@ -56,7 +47,6 @@ void Surface::declare(graph::Declaration& d) {
   d.scratch("position_sums", Shape::buffer(24, faces), "Σ w x", sums);
   d.scratch("normal_sums", Shape::buffer(24, faces), "Σ w (n + 1)", sums);
   if (emissive_) d.scratch("emission_sums", Shape::buffer(24, faces), "Σ w L_e", sums);
-  if (weights_ == Weights::Seen) d.scratch("back_area_sums", Shape::buffer(8, faces), "Σ w of backs", sums);
   d.scratch("footprints", Shape::buffer(4, faces), "where in the voxel", sums);
   d.scratch("emission_peak", Shape::buffer(4, 1), "bits of the largest radiance", sums);
   d.scratch("voxel_areas", Shape::buffer(8, voxels), "Σ area, h²", sums);
@@ -71,18 +61,16 @@ void Surface::prepare(graph::PrepareContext& context) {
   wantsEmission_ = context.has("emission");
   const uint32_t heuristic = normals_ == Normals::Heuristic ? 1 : 0;
   std::vector<gpu::SpecializationConstant> constants = materialConstants(context.traits());
-  exposed_ = context.has("pieces");
   constants.push_back({3, heuristic});
-  constants.push_back({4, exposed_ ? 1u : 0u});
-  pass_.prepare(device, method_, kType, "surface", 24, constants);
+  pass_.prepare(device, method_, kType, "surface", 20, constants);
   if (emissive_)
     emissionPeak_ = gpu::Pipeline(
         device,
         gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/emission_peak.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
   resolve_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/surface_resolve.comp",
-                                                            .bindings = std::vector<BindingType>(18, kB),
+                                                            .bindings = std::vector<BindingType>(17, kB),
                                                             .pushConstantBytes = 4,
-                                                            .constants = {{0, emissive_ && wantsEmission_ ? 1u : 0u}, {1, heuristic}, {2, exposed_ ? 1u : 0u}}});
+                                                            .constants = {{0, emissive_ && wantsEmission_ ? 1u : 0u}, {1, heuristic}}});
 }
 
 void Surface::record(graph::RecordContext& context) {
@@ -93,7 +81,6 @@ void Surface::record(graph::RecordContext& context) {
   if (emissive_) commands.fill(context.buffer("emission_sums"), 0);
   if (normals_ == Normals::Heuristic) commands.fill(context.buffer("angle_sums"), 0);
   if (wantsEmission_ && !emissive_) commands.fill(context.buffer("emission"), 0);
-  if (exposed_) commands.fill(context.buffer("back_area_sums"), 0);
   commands.barrier();
   sumPieces(context);
   commands.barrier();
@@ -114,12 +101,7 @@ void Surface::sumPieces(graph::RecordContext& context) {
     commands.dispatchItems(context.traits().materialCount, 64);
     commands.barrier();
   }
-  std::vector<const gpu::Buffer*> ids, exposure;
-  if (exposed_) {
-    ids = context.grown("triangle_ids");
-    exposure = context.grown("pieces");
-  }
-  const std::array<gpu::BoundResource, 20> rest = {
+  const std::array<gpu::BoundResource, 16> rest = {
       context.buffer("scene.triangle_materials"),
       context.buffer("scene.materials"),
       context.buffer("scene.textures"),
@@ -135,11 +117,7 @@ void Surface::sumPieces(graph::RecordContext& context) {
       peak,
       context.buffer("voxel_areas"),
       normals_ == Normals::Heuristic ? context.buffer("angle_sums") : context.buffer("area_sums"),
-      context.buffer("footprints"),
-      exposed_ ? context.buffer("triangle_first") : context.buffer("first"),
-      ids.empty() ? context.buffer("first") : *ids.front(),
-      exposed_ ? context.buffer("back_area_sums") : context.buffer("area_sums"),
-      exposure.empty() ? context.buffer("first") : *exposure.front()};
+      context.buffer("footprints")};
   pass_.record(context, grid, rest);
 }
 
@@ -153,8 +131,7 @@ void Surface::resolveFaces(graph::RecordContext& context) {
                  context.buffer("first"), area, context.buffer("albedo_sums"), context.buffer("position_sums"),
                  context.buffer("normal_sums"), emissive_ ? context.buffer("emission_sums") : area, context.buffer("emission_peak"),
                  context.buffer("voxel_areas"), normals_ == Normals::Heuristic ? context.buffer("angle_sums") : area, faces,
-                 wantsEmission_ ? context.buffer("emission") : faces, context.buffer("check_words"), context.buffer("footprints"),
-                 exposed_ ? context.buffer("back_area_sums") : area});
+                 wantsEmission_ ? context.buffer("emission") : faces, context.buffer("check_words"), context.buffer("footprints")});
   commands.push(voxelCount);
   commands.dispatchItems(voxelCount, 64);
 }

@@ -26,7 +26,6 @@ class Surface : public graph::Node {
  public:
   static constexpr std::string_view kType = "clustered_voxel.surface";
   enum class Normals : uint32_t { Mean, Heuristic };
-  enum class Weights : uint32_t { Seen, Area };
 
   Surface();
   std::string_view type() const override { return kType; }
@@ -42,8 +41,6 @@ class Surface : public graph::Node {
 
   TrianglePass::Method method_ = TrianglePass::Method::Auto;
   Normals normals_ = Normals::Mean;
-  Weights weights_ = Weights::Seen;
-  bool exposed_ = false;        ///< weights=seen, and there are triangles to tell
   bool emissive_ = false;       ///< some material emits
   bool wantsEmission_ = false;  ///< and somebody reads it
   params::Table table_;

@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "modules/clustered_voxel/voxelize/faces.h"
-
 namespace radivox::clustered_voxel {
 
 using graph::Extent;
@@ -11,8 +9,7 @@ using graph::Shape;
 
 Triangles::Triangles()
     : table_({TrianglePass::methodParam(&method_),
-              params::flag("exposure", &exposure_, "find out how much of each piece is seen", params::Invalidates::Plan),
-              params::number("most", &most_, {1, 1024}, "voxels met by more triangles have no list", params::Invalidates::Rerun)}) {}
+              params::number("most", &most_, {1, 4096}, "voxels met by more triangles have no list", params::Invalidates::Rerun)}) {}
 
 void Triangles::declare(graph::Declaration& d) {
   const uint32_t use = TrianglePass::useOf(method_);
@@ -21,13 +18,11 @@ void Triangles::declare(graph::Declaration& d) {
   d.read("occupancy", "two words a brick", use);
   d.read("rank", "occupied voxels before the brick", use);
   d.read("voxels", "packed coordinate of each voxel");
-  d.read("scene.triangle_materials", "one a triangle");
-  d.read("scene.materials", "Material");
-  d.read("scene.textures", "Texture");
   const Extent voxels = Extent::of("voxels");
   d.write("first", Shape::buffer(4, voxels + 1), "triangles in the lists of the voxels before, then the total", use | graph::UseTransfer);
   d.write("ids", Shape::buffer(4, Extent::of("triangle_entries")), "triangle ids, ascending within a voxel").growable = true;
-  graph::Port& pieces = d.write("pieces", Shape::buffer(8, Extent::of("triangle_entries")), "middle of each piece, its area, and rays of eight that see far");
+  graph::Port& pieces = d.write("pieces", Shape::buffer(8, Extent::of("triangle_entries")),
+                                "middle of each triangle in its voxel (unorm 10:10:10), its area there (float bits, h²)");
   pieces.growable = pieces.optional = true;
   d.publishCount("triangle_entries", "", 0);
   d.scratch("next", Shape::buffer(4, voxels + 1), "triangles met, then the next free place of each voxel", use | graph::UseTransfer);
@@ -47,13 +42,10 @@ void Triangles::prepare(graph::PrepareContext& context) {
   sort_ = gpu::Pipeline(
       device,
       gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/sort_triangles.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
-  std::vector<gpu::SpecializationConstant> constants = materialConstants(context.traits());
-  constants.push_back({3, exposure_ ? 1u : 0u});
   if (context.has("pieces"))
-    pieces_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/exposure.comp",
-                                                               .bindings = std::vector<gpu::BindingType>(13, kB),
-                                                               .pushConstantBytes = 8,
-                                                               .constants = constants});
+    pieces_ = gpu::Pipeline(
+        device, gpu::ComputePipelineInfo{
+                    .shader = "clustered_voxel/voxelize/pieces.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
   scan_ = std::make_unique<gpu::Scan>(device);
 }
 
@@ -75,9 +67,7 @@ void Triangles::record(graph::RecordContext& context) {
   commands.barrier();
   if (isCount) {
     commands.bind(limit_, {next, first});
-    const struct {
-      uint32_t voxelCount, most;
-    } push{voxelCount, most_};
+    const struct { uint32_t voxelCount, most; } push{voxelCount, most_};
     commands.push(push);
     commands.dispatchItems(uint64_t{voxelCount} + 1, 64);
     scan_->scan(commands, first, first, uint64_t{voxelCount} + 1, context.buffer("scan"), &context.buffer("total"));
@@ -88,12 +78,9 @@ void Triangles::record(graph::RecordContext& context) {
     if (context.has("pieces")) {
       commands.barrier();
       const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
-      commands.bind(pieces_, {b("grid"), b("scene.vertices"), b("scene.indices"), b("grid"), b("scene.triangle_materials"), b("scene.materials"),
-                                b("scene.textures"), b("occupancy"), b("rank"), b("voxels"), first, *context.grown("ids").front(),
-                                *context.grown("pieces").front()});
-      const struct {
-        uint32_t voxelCount, entryCount;
-      } push{voxelCount, static_cast<uint32_t>(context.count("triangle_entries"))};
+      commands.bind(pieces_, {context.buffer("grid"), context.buffer("scene.vertices"), context.buffer("scene.indices"),
+                              context.buffer("voxels"), first, *context.grown("ids").front(), *context.grown("pieces").front()});
+      const struct { uint32_t voxelCount, entryCount; } push{voxelCount, static_cast<uint32_t>(context.count("triangle_entries"))};
       commands.push(push);
       commands.dispatchItems(push.entryCount, 64);
     }

@@ -48,10 +48,9 @@ layout(push_constant, scalar) uniform Push {
   uint lightCount;
 };
 #include "clustered_voxel/structure.glsl"
-#include "shared/voxel_cast.glsl"
+#include "shared/voxel_walk.glsl"
 #include "shared/light.glsl"
 #include "shared/shadow_lookup.glsl"
-#include "shared/voxel_triangles.glsl"
 
 // Direct irradiance at a point of a triangle, as one texel of each shadow map has it. n: unit, on the side that is looked at.
 vec3 directIrradiance(vec3 p, vec3 n, uint triangle) {
@@ -76,20 +75,6 @@ void frameOf(vec3 n, out vec3 t, out vec3 b) {
   float c = n.x * n.y * a;
   t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
   b = vec3(c, s + n.y * n.y * a, -n.y);
-}
-
-// The face of `voxel` that stands for surface with this normal, drawn with probability n_k²: a face of another axis is mostly other surface's.
-// kHitBack: it has none.
-uint faceTowards(uint voxel, vec3 n, uint random) {
-  uint mask = planes[voxel].x >> 26;
-  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
-  precise vec3 w = n * n * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
-  precise float two = w.x + w.y;
-  precise float total = two + w.z;
-  precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
-  uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
-  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
-  return total > 0.0 ? face : kHitBack;
 }
 
 // Blocks side by side with one shift: as many as lanes walk together, so that they walk the same way.
@@ -131,81 +116,21 @@ void main() {
     vec2 square = fract(directions[place * rays + min(ray, rays - 1u)] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
     TraversalRay way = makeTraversalRay(origin, (t * cos(turn) + b * sin(turn)) * radius + n * sqrt(1.0 - square.x));
-    TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
-    uint random = rayRandom(i, ray);
-    uint hit = kHitNothing;
-    bool atStart = true;
-    bool going = busy;
-    uint nearTriangle = kNone;
-    vec3 nearNormal = vec3(0.0);
-    if (kNear) {
-      bool looking = busy;
-      while (subgroupAny(looking)) {
-        if (castMarch(way, cursor, looking)) atStart = false;
-        bool outside = isOutside(cursor.voxel);
-        looking = looking && !outside && cursor.time < nearDistance;
-        uint voxel = looking ? voxelIndex(ivec3(cursor.voxel)) : 0u;
-        looking = looking && voxel != kNone;
-        voxel = looking ? voxel : 0u;
-        float time;
-        vec3 normal;
-        uint triangle;
-        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal, triangle)) {
-          normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
-          hit = faceTowards(voxel, normal, random);
-          cursor.time = time;
-          nearTriangle = triangle;
-          nearNormal = normal;
-          looking = going = false;
-        }
-        bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];
-        if (subgroupAny(noList)) {
-          uint none = 0u;
-          uint found = castFace(way, cursor, noList, atStart ? excluded : 0u, none, random);
-          if (found != kHitNothing) {
-            hit = found;
-            looking = going = false;
-          }
-        }
-        TraversalCursor stepped = cursor;
-        traversalStep(way, stepped);
-        cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(looking));
-        cursor.time = looking ? stepped.time : cursor.time;
-        atStart = atStart && !looking;
-      }
-    } else {
-      TraversalCursor stepped = cursor;
-      traversalStep(way, stepped);
-      cursor.voxel = mix(stepped.voxel, cursor.voxel, bvec3(crowded));
-      cursor.time = crowded ? 0.0 : stepped.time;
-      atStart = crowded;
-    }
-    uint inFront = 0u;
-    while (subgroupAny(going)) {
-      if (castMarch(way, cursor, going && !atStart)) inFront = 0u;
-      going = going && !isOutside(cursor.voxel);
-      uint found = castFace(way, cursor, going, atStart ? excluded : 0u, inFront, random);
-      hit = going ? found : hit;
-      going = going && found == kHitNothing;
-      TraversalCursor stepped = cursor;
-      traversalStep(way, stepped);
-      cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(going));
-      cursor.time = going ? stepped.time : cursor.time;
-      atStart = false;
-    }
-    bool isFace = busy && hit < kHitBack;
-    vec3 radiosity = faceRadiosity[isFace ? hit : 0u];
+    WalkHit hit = walkRay(way, start, excluded, own, kNear ? nearDistance : 0.0, rayRandom(i, ray), busy);
+    bool isFace = busy && hit.face < kHitBack;
+    uint face = isFace ? hit.face : 0u;
+    vec3 radiosity = faceRadiosity[face];
     // Close by, a voxel is a coarse patch of light and shadow: what is sunlit at the hit itself counts.
-    bool exact = isFace && nearTriangle != kNone;
+    bool exact = isFace && hit.triangle != kNone;
     if (kShadow && subgroupAny(exact)) {
       if (exact) {
-        vec3 at = position.xyz + (kNearLift * n + cursor.time * way.direction) * grid.h;
-        vec3 change = directIrradiance(at, nearNormal, nearTriangle) - faceIrradiance[hit];
-        radiosity = max(radiosity + decodeAlbedo(faces[hit].albedo) * change, vec3(0.0));
+        vec3 at = position.xyz + (kNearLift * n + hit.time * way.direction) * grid.h;
+        vec3 change = directIrradiance(at, hit.normal, hit.triangle) - faceIrradiance[face];
+        radiosity = max(radiosity + decodeAlbedo(faces[face].albedo) * change, vec3(0.0));
       }
     }
     sum.xyz += isFace ? radiosity : vec3(0.0);
-    sum.w += busy && hit == kHitNothing ? 1.0 : 0.0;
+    sum.w += busy && hit.face == kHitNothing ? 1.0 : 0.0;
   }
   if (isPixel) imageStore(rawImage, ivec2(pixel), end > 0u ? sum / float(rays) : vec4(0.0));
 }

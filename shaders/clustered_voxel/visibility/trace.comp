@@ -36,10 +36,10 @@ layout(push_constant, scalar) uniform Push {
   float triangleDistance;  // voxels; up to here rays meet triangles
 };
 #include "shared/dispatch.glsl"
-#include "shared/voxel_cast.glsl"
-layout(constant_id = 3) const bool kNear = false;    // the first voxels of a ray are tested by their triangles
-layout(constant_id = 4) const bool kMasked = false;  // some material has an alpha mask
 #include "shared/scene.h"
+#include "shared/voxel_cast.glsl"
+layout(constant_id = 3) const bool kNear = false;    // rays start on pieces of surface, and test triangles in their first voxels
+layout(constant_id = 4) const bool kMasked = false;  // some material has an alpha mask
 layout(set = 0, binding = 13, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
 layout(set = 0, binding = 14, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer Vertices { Vertex vertices[]; };
@@ -47,16 +47,12 @@ layout(set = 0, binding = 16, scalar) readonly buffer Indices { uint indices[]; 
 layout(set = 0, binding = 17, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Textures { Texture textures[]; };
-layout(set = 0, binding = 20, scalar) readonly buffer Pieces { uvec2 pieces[]; };
-#include "shared/voxel_triangles.glsl"
+layout(set = 0, binding = 20, scalar) readonly buffer Pieces { uvec2 pieces[]; };  // middle, area (clustered_voxel.triangles)
+#include "shared/voxel_walk.glsl"
 
-// What piece of its surface a ray of the face starts from.
-struct Start {
-  vec3 origin;
-  vec3 normal;
-  uint triangle;
-};
+const float kPieceLift = 2e-3;  // voxels: pieces' middles are good to 1e-3
 
+// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back); n: that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
   uint id = triangleIds[entry];
   vec3 a = vertices[indices[3u * id]].position;
@@ -64,26 +60,52 @@ float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
   vec3 e2 = vertices[indices[3u * id + 2u]].position - a;
   precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
   precise float squared = triangleDot(across, across);
-  n = across * preciseInverseSqrt(max(squared, 1e-30));
-  if (backs) n = -n;
-  uvec2 piece = pieces[entry];
-  float seen = float((backs ? piece.y >> 24 : piece.y >> 16) & 255u);
-  float along = (f & 1u) != 0u ? -n[f >> 1] : n[f >> 1];
-  return max(along, 0.0) * unpackHalf2x16(piece.y).x * max(seen, 1.0 / 16.0);
+  precise vec3 unit = across * (preciseInverseSqrt(max(squared, 1e-30)) * (backs ? -1.0 : 1.0));
+  n = unit;
+  precise float weight = max((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1], 0.0) * uintBitsToFloat(pieces[entry].y);
+  return weight;
 }
 
-// The face of `voxel` that stands for surface with this normal, drawn with probability n_k²: a face of another axis is mostly other surface's.
-// kHitBack: it has none.
-uint faceTowards(uint voxel, vec3 n, uint random) {
-  uint mask = planes[voxel].x >> 26;
-  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
-  precise vec3 w = n * n * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
-  precise float two = w.x + w.y;
-  precise float total = two + w.z;
-  precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
-  uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
-  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
-  return total > 0.0 ? face : kHitBack;
+// The pieces of a face's surface, as rays start from them: fronts, or backs where there are no fronts (as clustered_voxel.surface makes faces).
+struct Surface {
+  uint first;
+  uint end;
+  bool backs;
+  float total;  // of the weights; 0: no list
+};
+
+Surface surfaceOf(uint voxel, uint f) {
+  Surface surface = Surface(triangleFirst[voxel], triangleFirst[voxel + 1u], false, 0.0);
+  vec3 n;
+  for (uint e = surface.first; e < surface.end; ++e) surface.total += pieceWeight(e, f, false, n);
+  if (surface.total > 0.0) return surface;
+  surface.backs = true;
+  for (uint e = surface.first; e < surface.end; ++e) surface.total += pieceWeight(e, f, true, n);
+  return surface;
+}
+
+// The entry whose share of the weights holds `at` in [0, 1).
+uint pieceAt(Surface surface, uint f, float at, out vec3 normal) {
+  float left = at * surface.total;
+  uint chosen = surface.first;
+  normal = vec3(0.0, 0.0, 1.0);
+  for (uint e = surface.first; e < surface.end; ++e) {
+    vec3 n;
+    float weight = pieceWeight(e, f, surface.backs, n);
+    if (weight > 0.0 && left >= 0.0) {
+      chosen = e;
+      normal = n;
+    }
+    left -= weight;
+    if (left < 0.0) break;
+  }
+  return chosen;
+}
+
+uint hitWord(uint face, float time, vec3 direction) {
+  if (face == kHitNothing) return kMissHit + directionBin(direction);
+  if (face == kHitBack) return kMissHit + 6u;
+  return face | (time <= nearDistance ? kNearHit : 0u) | (time <= kCloseDistance ? kCloseHit : 0u);
 }
 
 void main() {
@@ -120,97 +142,24 @@ void main() {
   uint table = shiftOf(s) * rayCount;
 
   if (kNear) {
-    uint ownVoxel = face.key >> 3;
     uint f = face.key & 7u;
-    uint firstEntry = triangleFirst[ownVoxel];
-    uint endEntry = triangleFirst[ownVoxel + 1u];
-    float total = 0.0;
-    bool backs = false;
-    vec3 pn;
-    for (uint e = firstEntry; e < endEntry; ++e) total += pieceWeight(e, f, false, pn);
-    if (total == 0.0) {
-      backs = true;
-      for (uint e = firstEntry; e < endEntry; ++e) total += pieceWeight(e, f, true, pn);
-    }
+    Surface surface = surfaceOf(face.key >> 3, f);
     uint turn = hashBits(s ^ 0x51ed270bu);
-    ivec3 meanStart = start;
     for (; subgroupAny(ray < end); ++ray) {
-      bool busy = ray < end;
-      uint at = busy ? ray : max(ray, 1u) - 1u;
+      uint at = min(ray, rayCount - 1u);
       vec3 from = origin;
       vec3 about = n;
       uint own = kNone;
-      start = meanStart;
-      if (total > 0.0) {
-        // Strata of the pieces' weights, in an order that has nothing to do with that of the directions.
-        float stratum = (float((at * 11u + turn) % rayCount) + 0.5) / float(rayCount) * total;
-        uint chosen = firstEntry;
-        for (uint e = firstEntry; e < endEntry; ++e) {
-          float w = pieceWeight(e, f, backs, pn);
-          if (w > 0.0 && stratum >= 0.0) {
-            chosen = e;
-            about = pn;
-          }
-          stratum -= w;
-          if (stratum < 0.0) break;
-        }
-        own = triangleIds[chosen];
-        from = vec3(coordinate) + decodePosition(pieces[chosen].x) + 2e-3 * about;
-        start = clamp(ivec3(floor(from)), ivec3(0), ivec3(castSize) - 1);
+      if (surface.total > 0.0) {
+        // Strata of the surface, in an order that has nothing to do with that of the directions.
+        uint entry = pieceAt(surface, f, (float((at * 11u + turn) % rayCount) + 0.5) / float(rayCount), about);
+        own = triangleIds[entry];
+        from = vec3(coordinate) + decodePosition(pieces[entry].x) + kPieceLift * about;
       }
       TraversalRay way = makeTraversalRay(from, alongNormal(decodeDirection(directions[table + at]), about));
-      TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
-      uint random = rayRandom(s, at);
-      uint hit = kHitNothing;
-      bool atStart = true;
-      bool looking = busy;
-      bool going = busy;
-      while (subgroupAny(looking)) {
-        if (castMarch(way, cursor, looking)) atStart = false;
-        bool outside = isOutside(cursor.voxel);
-        looking = looking && !outside && cursor.time < triangleDistance;
-        uint voxel = looking ? voxelIndex(ivec3(cursor.voxel)) : 0u;
-        looking = looking && voxel != kNone;
-        voxel = looking ? voxel : 0u;
-        float time;
-        vec3 normal;
-        uint triangle;
-        if (nearestTriangle(way, cursor, looking, voxel, own, time, normal, triangle)) {
-          hit = faceTowards(voxel, normal, random);
-          cursor.time = time;
-          looking = going = false;
-        }
-        bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];
-        if (subgroupAny(noList)) {
-          uint none = 0u;
-          uint found = castFace(way, cursor, noList, atStart ? excluded : 0u, none, random);
-          if (found != kHitNothing) {
-            hit = found;
-            looking = going = false;
-          }
-        }
-        TraversalCursor stepped = cursor;
-        traversalStep(way, stepped);
-        cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(looking));
-        cursor.time = looking ? stepped.time : cursor.time;
-        atStart = atStart && !looking;
-      }
-      uint inFront = 0u;
-      while (subgroupAny(going)) {
-        if (castMarch(way, cursor, going)) inFront = 0u;
-        going = going && !isOutside(cursor.voxel);
-        uint found = castFace(way, cursor, going, 0u, inFront, random);
-        hit = going ? found : hit;
-        going = going && found == kHitNothing;
-        TraversalCursor stepped = cursor;
-        traversalStep(way, stepped);
-        cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(going));
-        cursor.time = going ? stepped.time : cursor.time;
-      }
-      uint result = hit | (cursor.time <= nearDistance ? kNearHit : 0u) | (cursor.time <= kCloseDistance ? kCloseHit : 0u);
-      result = hit == kHitBack ? kMissHit + 6u : result;
-      result = hit == kHitNothing ? kMissHit + directionBin(way.direction) : result;
-      if (!idle && busy) hits[row * rayCount + at] = result;
+      ivec3 first = clamp(ivec3(floor(from)), ivec3(0), ivec3(castSize) - 1);
+      WalkHit hit = walkRay(way, first, excluded, own, triangleDistance, rayRandom(s, at), ray < end);
+      if (!idle && ray < end) hits[row * rayCount + at] = hitWord(hit.face, hit.time, way.direction);
     }
     return;
   }
@@ -242,9 +191,7 @@ void main() {
     bool outside = isOutside(cursor.voxel);
     uint hit = castFace(way, cursor, busy, atStart ? excluded : 0u, inFront, rayRandom(s, at));
     fresh = !busy || outside || hit != kHitNothing;
-    uint result = hit | (cursor.time <= nearDistance ? kNearHit : 0u) | (cursor.time <= kCloseDistance ? kCloseHit : 0u);
-    result = hit == kHitBack ? kMissHit + 6u : result;
-    result = outside ? kMissHit + directionBin(way.direction) : result;
+    uint result = hitWord(outside ? kHitNothing : hit, cursor.time, way.direction);
     // Written in every pass: overwritten until the ray is done, and again as it was once all are.
     last = busy ? result : last;
     if (!idle) hits[row * rayCount + at] = last;

@@ -28,8 +28,6 @@ layout(set = 0, binding = 13, scalar) writeonly buffer Faces { Face faces[]; };
 layout(set = 0, binding = 14, scalar) writeonly buffer Emission { vec3 emission[]; };
 layout(set = 0, binding = 15, scalar) buffer TotalArea { uint totalArea[2]; };
 layout(set = 0, binding = 16, scalar) readonly buffer Footprints { uint footprints[]; };
-layout(set = 0, binding = 17, scalar) readonly buffer BackAreaSums { uvec2 backAreaSums[]; };
-layout(constant_id = 2) const bool kExposed = false;
 layout(push_constant, scalar) uniform Push { uint voxelCount; };
 
 shared uint groupArea[2];
@@ -103,8 +101,7 @@ void writeFaces(uint voxel) {
       normal = side < 0.0 ? -axisNormal : axisNormal;
     }
     faces[face].key = voxel << 3 | f;
-    // Its other side may be hidden more, or less.
-    faces[face].area = fixedToFloat(kExposed && !shows ? backAreaSums[slot] : area);
+    faces[face].area = fixedToFloat(area);
     faces[face].normal = encodeNormal(normal);
     faces[face].position = encodePosition(meanOf(positionSums[3u * slot], positionSums[3u * slot + 1u], positionSums[3u * slot + 2u], scale));
     uvec2 albedo = encodeAlbedo(meanOf(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u], scale));

@@ -3,7 +3,6 @@
 #include "shared/fixed_point.glsl"
 
 layout(constant_id = 3) const bool kHeuristic = false;  // sum angles for normals=heuristic
-layout(constant_id = 4) const bool kExposed = false;    // weigh pieces by how much of them is seen
 
 layout(set = 0, binding = 7, scalar) readonly buffer Occupancy { uvec2 occupancy[]; };
 layout(set = 0, binding = 8, scalar) readonly buffer Rank { uint brickRank[]; };
@@ -19,11 +18,6 @@ layout(set = 0, binding = 16, scalar) readonly buffer EmissionPeak { uint emissi
 layout(set = 0, binding = 17, scalar) buffer VoxelAreas { uint voxelAreas[]; };      // 2 words a voxel: Σ area
 layout(set = 0, binding = 18, scalar) buffer AngleSums { uint angleSums[]; };        // 12 words a voxel: Σ area · angle(n, e_f)
 layout(set = 0, binding = 19, scalar) buffer Footprints { uint footprints[]; };      // a word a face: footprintOf
-
-layout(set = 0, binding = 20, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
-layout(set = 0, binding = 21, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
-layout(set = 0, binding = 23, scalar) readonly buffer Pieces { uvec2 pieces[]; };
-layout(set = 0, binding = 22, scalar) buffer BackAreaSums { uint backAreaSums[]; };  // 2 words a face: Σ w of the backs of one-sided surfaces
 
 #include "clustered_voxel/voxelize/emission_scale.glsl"
 #include "clustered_voxel/voxelize/footprint.glsl"
@@ -52,26 +46,6 @@ void addToFace(uint face, float weight, vec3 albedo, vec3 position, vec3 normal)
     radivoxFixedAtomicAdd(positionSums[word], positionSums[word + 1u], toFixed(weightedPosition))
     radivoxFixedAtomicAdd(normalSums[word], normalSums[word + 1u], toFixed(weightedNormal))
   }
-}
-
-// Rays from the foot of a wall see half of what others see, yet the sun lights it as well: from two of eight rays on a piece counts in full.
-layout(constant_id = 5) const float kExposureScale = 0.25;
-const float kLeastExposure = 1.0 / 16.0;
-const float kLeastWeight = 1.0 / 4294967296.0;  // h²; one unit of the sums
-
-// Of each side of the piece, how much is seen (exposure.comp), front and back.
-vec2 exposureOf(uint voxel, uint triangle) {
-  uint end = kExposed ? triangleFirst[voxel + 1u] : 0u;
-  if (!kExposed || triangleFirst[voxel] == end) return vec2(1.0);  // too many triangles for a list
-  uint low = triangleFirst[voxel];
-  while (end - low > 1u) {
-    uint middle = (low + end) >> 1;
-    if (triangleIds[middle] <= triangle)
-      low = middle;
-    else
-      end = middle;
-  }
-  return clamp(vec2(uvec2(pieces[low].y >> 16, pieces[low].y >> 24) & 0xffu) * kExposureScale, vec2(kLeastExposure), vec2(1.0));
 }
 
 // Abramowitz and Stegun 4.4.45, error below 7e-5 rad.
@@ -112,8 +86,6 @@ void visitVoxel(Triangle t, ivec3 turned) {
   }
   // A one-sided surface adds to its front alone, even where backs reflect too: see surface_resolve.comp.
   bool doubleSided = (materials[material].flags & kMaterialDoubleSided) != 0u;
-  // w = area · |n·e| · exposure; never 0, so that a face whose surface is all buried still has means.
-  vec2 exposure = exposureOf(index, t.id);
   // One loop, so that the additions are compiled once: k = s / 2; even s add to the front.
   for (uint s = 0u; s < 6u; ++s) {
     uint k = s >> 1;
@@ -126,11 +98,6 @@ void visitVoxel(Triangle t, ivec3 turned) {
     uint face = first + uint(bitCount(mask & ((1u << f) - 1u)));
     uint footprint = footprintOf(t, turned, piece, k);
     if ((footprints[face] & footprint) != footprint) atomicOr(footprints[face], footprint);
-    precise float backWeight = max(weight * exposure.y, kLeastWeight);
-    precise float frontWeight = max(weight * exposure.x, kLeastWeight);
-    weight = isBack ? backWeight : frontWeight;
-    if (kExposed && !doubleSided)
-      radivoxFixedAtomicAdd(backAreaSums[2u * face], backAreaSums[2u * face + 1u], toFixed(backWeight))
     addToFace(face, weight, surface.albedo, position, isBack ? -normal : normal);
     if (!kEmissive || isBack || !any(greaterThan(surface.emission, vec3(0.0)))) continue;
     for (uint c = 0u; c < 3u; ++c) {

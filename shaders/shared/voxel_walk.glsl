@@ -1,0 +1,87 @@
+// A ray that sees triangles in its first voxels and planes beyond them. Over shared/voxel_cast.glsl and shared/voxel_triangles.glsl, whose
+// declarations the includer makes.
+#ifndef RADIVOX_SHADERS_SHARED_VOXEL_WALK_GLSL
+#define RADIVOX_SHADERS_SHARED_VOXEL_WALK_GLSL
+#include "shared/voxel_cast.glsl"
+#include "shared/voxel_triangles.glsl"
+
+// The face of `voxel` that stands for surface with unit normal n, drawn with probability n_k²: a face of another axis is mostly other surface's.
+// kHitBack: it has none.
+uint faceTowards(uint voxel, vec3 n, uint random) {
+  uint mask = planes[voxel].x >> 26;
+  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
+  precise vec3 w = n * n * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
+  precise float two = w.x + w.y;
+  precise float total = two + w.z;
+  precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
+  uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
+  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
+  return total > 0.0 ? face : kHitBack;
+}
+
+struct WalkHit {
+  uint face;      // kHitNothing: the ray left the grid; kHitBack
+  float time;     // voxels
+  uint triangle;  // kNone: stopped by a plane
+  vec3 normal;    // of the triangle, unit, on the side that the ray sees
+};
+
+// Voxels are searched for triangles while the ray enters them before `nearDistance`; beyond, and where a voxel's list is empty (too many triangles),
+// its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from. Lanes stay together; all must call.
+WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float nearDistance, uint random, bool live) {
+  WalkHit result = WalkHit(kHitNothing, 0.0, kNone, vec3(0.0));
+  TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
+  bool atStart = true;
+  bool looking = live && nearDistance > 0.0;
+  bool going = live;
+  while (subgroupAny(looking)) {
+    if (castMarch(way, cursor, looking)) atStart = false;
+    looking = looking && !isOutside(cursor.voxel) && cursor.time < nearDistance;
+    uint voxel = looking ? voxelIndex(ivec3(cursor.voxel)) : 0u;
+    looking = looking && voxel != kNone;
+    voxel = looking ? voxel : 0u;
+    float time;
+    vec3 normal;
+    uint triangle;
+    if (nearestTriangle(way, cursor, looking, voxel, own, time, normal, triangle)) {
+      precise vec3 unit = normal * preciseInverseSqrt(max(triangleDot(normal, normal), 1e-30));
+      result = WalkHit(faceTowards(voxel, unit, random), time, triangle, unit);
+      looking = going = false;
+    }
+    bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];
+    if (subgroupAny(noList)) {
+      uint inFront = 0u;
+      uint found = castFace(way, cursor, noList, atStart ? excluded : 0u, inFront, random);
+      if (found != kHitNothing) {
+        result.face = found;
+        result.time = cursor.time;
+        looking = going = false;
+      }
+    }
+    TraversalCursor stepped = cursor;
+    traversalStep(way, stepped);
+    cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(looking));
+    cursor.time = looking ? stepped.time : cursor.time;
+    atStart = atStart && !looking;
+  }
+  uint inFront = 0u;
+  while (subgroupAny(going)) {
+    if (castMarch(way, cursor, going)) {
+      inFront = 0u;
+      atStart = false;
+    }
+    going = going && !isOutside(cursor.voxel);
+    uint found = castFace(way, cursor, going, atStart ? excluded : 0u, inFront, random);
+    result.face = going ? found : result.face;
+    result.time = going ? cursor.time : result.time;
+    going = going && found == kHitNothing;
+    TraversalCursor stepped = cursor;
+    traversalStep(way, stepped);
+    cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(going));
+    cursor.time = going ? stepped.time : cursor.time;
+    atStart = false;
+  }
+  return result;
+}
+
+#endif
