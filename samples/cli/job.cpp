@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kDefaultGraph = "clustered_voxel";
+constexpr const char* kDefaultGraph = "clustered_voxel_pixels";
 
 json parsePreset(const Source& preset) {
   // Copies and prints of JSON recurse: nesting beyond what a preset needs could end the stack.
@@ -31,13 +31,24 @@ json parsePreset(const Source& preset) {
   throw Error(ErrorCode::BadInput, preset.source + ": not a JSON object; write {\"set\": {\"node.param\": value}}");
 }
 
-/// "request": {"bounces": 1} or {"bounces": "all"}.
-void applyRequest(const Source& preset, const json& parsed, scene::Request& request) {
+constexpr uint32_t kMostSupersample = 8;
+
+/// "request": {"bounces": 1} or {"bounces": "all"}; {"supersample": 2}.
+void applyRequest(const Source& preset, const json& parsed, Job& job) {
+  scene::Request& request = job.request;
   const auto found = parsed.find("request");
   if (found == parsed.end()) return;
   if (!found->is_object()) throw Error(ErrorCode::BadInput, preset.source + ": request: not an object; write {\"bounces\": 1}");
   for (const auto& [key, value] : found->items()) {
-    if (key != "bounces") throw Error(ErrorCode::BadInput, preset.source + ": request." + key + ": unknown; there is bounces");
+    if (key == "supersample") {
+      if (!value.is_number_unsigned() || value.get<uint64_t>() < 1 || value.get<uint64_t>() > kMostSupersample)
+        throw Error(ErrorCode::BadInput, preset.source + ": request.supersample: not a whole number from 1 to " +
+                                             std::to_string(kMostSupersample) + "; each pixel is the mean of so many squared");
+      job.supersample = value.get<uint32_t>();
+      continue;
+    }
+    if (key != "bounces")
+      throw Error(ErrorCode::BadInput, preset.source + ": request." + key + ": unknown; there are bounces and supersample");
     if (value.is_number_unsigned() && value.get<uint64_t>() < scene::kAllBounces) {
       request.bounces = static_cast<uint32_t>(value.get<uint64_t>());
     } else if (value.is_string() && value.get<std::string>() == "all") {
@@ -118,13 +129,6 @@ void fillRegistry(const Options& options, plugin::Registry& registry) {
 
 void prepareJob(const Options& options, bool wantsDisplay, Job& job) {
   job.size = parseSize(options.size);
-  job.supersample = parseWhole("--supersample", options.supersample, 1, 8);
-  job.request.width = job.size.width * job.supersample;
-  job.request.height = job.size.height * job.supersample;
-  if (job.request.width > kMaxSide || job.request.height > kMaxSide) {
-    throw Error(ErrorCode::BadInput, "--supersample " + options.supersample + " of --size " + options.size + ": sides beyond " +
-                                         std::to_string(kMaxSide) + " pixels; lower one of them");
-  }
   const std::vector<std::string> aovNames = parseList("--aov", options.aovs);
   job.request.aovs = {aovNames.begin(), aovNames.end()};
   job.lightParams = lightTable(job.lights);
@@ -135,10 +139,17 @@ void prepareJob(const Options& options, bool wantsDisplay, Job& job) {
   for (const std::string& name : options.presets) {
     presets.push_back(findPreset(name));
     const json parsed = parsePreset(presets.back());
-    applyRequest(presets.back(), parsed, job.request);
+    applyRequest(presets.back(), parsed, job);
     const auto graph = parsed.find("graph");
     if (!graphName && graph != parsed.end() && graph->is_string()) graphName = graph->get<std::string>();
     job.presetNames.push_back(presets.back().name);
+  }
+  if (!options.supersample.empty()) job.supersample = parseWhole("--supersample", options.supersample, 1, kMostSupersample);
+  job.request.width = job.size.width * job.supersample;
+  job.request.height = job.size.height * job.supersample;
+  if (job.request.width > kMaxSide || job.request.height > kMaxSide) {
+    throw Error(ErrorCode::BadInput, "--supersample " + std::to_string(job.supersample) + " of --size " + options.size + ": sides beyond " +
+                                         std::to_string(kMaxSide) + " pixels; lower one of them");
   }
   if (options.bounces) job.request.bounces = parseBounces(*options.bounces);
 

@@ -55,7 +55,7 @@ void addPlanOptions(CLI::App* command, Options& options) {
       ->type_name("N|all");
   command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
   command->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
-  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: 1)")->type_name("K");
+  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: the preset's, or 1)")->type_name("K");
   command->add_option("--aov", options.aovs, "what to write, linear (default: color)")->type_name("NAME[,NAME...]");
   command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
   addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");

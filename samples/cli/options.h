@@ -23,7 +23,7 @@ struct Options {
   std::string format = "text";
   std::string device = "-1";
   std::string frames = "1";
-  std::string supersample = "1";
+  std::string supersample;  ///< empty: what the preset says, or 1
   bool validate = false;
   // render: settings by what they cost and how wrong they are
   std::string maxError;
