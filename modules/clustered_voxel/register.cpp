@@ -14,6 +14,7 @@
 #include "modules/clustered_voxel/visibility/transfer.h"
 #include "modules/clustered_voxel/visibility/visibility.h"
 #include "modules/clustered_voxel/voxelize/faces.h"
+#include "modules/clustered_voxel/voxelize/fragments.h"
 #include "modules/clustered_voxel/voxelize/surface.h"
 #include "modules/clustered_voxel/voxelize/voxelize.h"
 
@@ -25,6 +26,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Index>("from a voxel's place to its number, and bricks to the nearest voxel");
   registry.add<Faces>("which of a voxel's six faces carry surface");
   registry.add<Surface>("area, albedo, mean normal, position and emission of voxel faces");
+  registry.add<Fragments>("how many triangles meet in a voxel, and their mean normal");
   registry.add<Visibility>("what each voxel face sees: form factors by counting rays");
   registry.add<Cluster>("groups faces that lie near each other and face the same way");
   registry.add<Members>("what each cluster holds, and its means");
