@@ -58,7 +58,22 @@ class NanoVdbReader : public Reader {
  public:
   explicit NanoVdbReader(const std::string& path) : path_(path) {
     guarded(path_, [&] {
-      for (const nanovdb::io::GridMetaData& grid : nanovdb::io::readGridMetaData(path_)) names_.push_back(grid.gridName);
+      // NanoVDB's own reader takes what is cut off for the end.
+      const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path_));
+      std::ifstream stream(path_, std::ios::binary);
+      std::streamoff at = 0;
+      nanovdb::io::Segment segment;
+      while (at < size) {
+        if (!segment.read(stream) || !stream) fail(path_, "it is cut off");
+        at = stream.tellg();
+        for (const nanovdb::io::GridMetaData& grid : segment.meta) {
+          names_.push_back(grid.gridName);
+          at += static_cast<std::streamoff>(grid.fileSize);
+        }
+        stream.seekg(at);
+        segment = {};
+      }
+      if (at != size || names_.empty()) fail(path_, "it is cut off");
     });
   }
   const std::vector<std::string>& names() const override { return names_; }
