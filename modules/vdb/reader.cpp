@@ -40,6 +40,7 @@ class OpenVdbReader : public Reader {
     guarded(path_, [&] {
       file_.open(false);  // no delayed loading: what is cut off must be found here, not by a signal
       for (auto name = file_.beginName(); name != file_.endName(); ++name) names_.push_back(name.gridName());
+      if (names_.empty()) fail(path_, "it holds no grid");
     });
   }
   const std::vector<std::string>& names() const override { return names_; }

@@ -249,7 +249,7 @@ TEST_F(VdbTest, FacesThatTheViewDoesNotNeedAreNotThereSlow) {
   EXPECT_GT(findGrid(grids, "indirect")->activeVoxelCount(), 0u);
 }
 
-TEST_F(VdbTest, TheSameSceneGivesTheSameBytesAndAnotherOneAnotherTag) {
+TEST_F(VdbTest, TheSameSceneGivesTheSameBytesAndAnotherOneAnotherTagSlow) {
   constexpr const char* kGrids = "occupancy,cluster_id,direct_faces";
   for (const char* extension : {".vdb", ".nvdb"}) {
     const scene::Scene scene = scene::loadScene("builtin:cornell");
@@ -359,7 +359,7 @@ TEST_F(VdbTest, RunsAgainOnlyWhenSomethingChanged) {
   EXPECT_TRUE(fs::exists(path("a.vdb")));
 }
 
-TEST_F(VdbTest, AnInterruptedDumpLeavesNothing) {
+TEST_F(VdbTest, AnInterruptedDumpLeavesNothingSlow) {
   VdbRun run(device(), scene::loadScene("builtin:cornell"),
              {.file = path("a.vdb"), .grids = "occupancy,area,area_faces,mean_normal_faces"});
   fs::remove(path("a.vdb"));
