@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# First picture: installs what is missing, builds, renders to out/. A second run only renders.
+# First picture: installs what is missing, builds, renders to out/ and writes the voxels there as VDB. A second run only renders.
 #   samples/run.sh                                  the built-in atrium, and Sponza where it is found
 #   samples/run.sh builtin:cornell path/to/a.glb    these scenes
 # RADIVOX_SIZE=640x360 sets the size; RADIVOX_SHARED names a folder that holds scenes/sponza.glb.
@@ -42,6 +42,10 @@ for scene in "${scenes[@]}"; do
   echo "rendering $scene at $size"
   build/release/bin/radivox render "$scene" --size "$size" --aov color,direct,indirect,albedo,normal,depth \
     --out "out/$name.exr" --out "out/$name.png" --stats "out/$name.json"
+  # Without OpenVDB in this build there is no such file.
+  if grep -q '^RADIVOX_VDB:BOOL=ON' build/release/CMakeCache.txt; then
+    build/release/bin/radivox vdb "$scene" --grids voxels --out "out/$name.vdb"
+  fi
   for file in "out/$name.png" "out/$name.exr" "out/$name.json" "out/$name.vdb"; do
     if [[ -f "$file" ]]; then
       echo "  $root/$file"

@@ -28,6 +28,11 @@ Node& Graph::add(std::string name, std::unique_ptr<Node> node) {
 
 void Graph::connect(std::string_view from, std::string_view to) { edges_.push_back({parseEndpoint(from), parseEndpoint(to)}); }
 
+void Graph::disconnect(std::string_view to) {
+  const Endpoint endpoint = parseEndpoint(to);
+  std::erase_if(edges_, [&](const Edge& edge) { return edge.to.node == endpoint.node && edge.to.port == endpoint.port; });
+}
+
 void Graph::output(std::string_view endpoint) {
   Endpoint parsed = parseEndpoint(endpoint);
   const auto same = [&](const Endpoint& o) { return o.node == parsed.node && o.port == parsed.port; };

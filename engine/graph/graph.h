@@ -32,6 +32,8 @@ class Graph {
   /// "voxelize.occupancy", "index.occupancy". `from` may also be the name of an import ("scene.vertices", "host.gbuffer_position"); the
   /// text up to the first dot is the node's name, the rest is the port's (port names may hold dots: "voxelize.scene.vertices").
   void connect(std::string_view from, std::string_view to);
+  /// Removes the edge into `to`; none is fine.
+  void disconnect(std::string_view to);
   void output(std::string_view endpoint);  ///< kept alive and readable after the run
   void clearOutputs() { outputs_.clear(); }
   /// What a picture of this graph can be asked for: AOV name → "node.port", or "node.port.w" for one channel (x, y, z, w) of an image.

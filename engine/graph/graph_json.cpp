@@ -173,7 +173,8 @@ Json paramsToJson(const params::Table& table) {
   for (const params::Param& param : table.all()) {
     const std::string value = param.get();
     if (value == param.defaultValue) continue;
-    json[param.name] = param.type == params::Type::Choice ? Json(value) : Json::parse(value);
+    const bool isText = param.type == params::Type::Choice || param.type == params::Type::Text;
+    json[param.name] = isText ? Json(value) : Json::parse(value);
   }
   return json;
 }

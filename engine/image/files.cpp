@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "engine/error.h"
+#include "engine/image/atomic_file.h"
 #include "engine/image/image.h"
 
 namespace radivox::image {
@@ -89,14 +90,23 @@ class TemporaryFile {
     if (!name_.empty()) ::unlink(name_.c_str());
   }
 
-  void write(const std::string& bytes) {
+  void write(const char* bytes, size_t count) {
     size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t n = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    while (done < count) {
+      const ssize_t n = ::write(descriptor_, bytes + done, count - done);
       if (n < 0 && errno == EINTR) continue;
       if (n < 0) fail(shown_, mendFor(errno, folder_));
       done += static_cast<size_t>(n);
     }
+  }
+
+  int64_t seek(int64_t offset, int whence) {
+    const off_t at = ::lseek(descriptor_, offset, whence);
+    if (at < 0) fail(shown_, mendFor(errno, folder_));
+    return at;
+  }
+
+  void flush() {
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(shown_, mendFor(errno, folder_));
   }
 
@@ -117,12 +127,74 @@ class TemporaryFile {
   int descriptor_ = -1;
 };
 
+/// Buffers what a stream writes.
+class FileBuffer : public std::streambuf {
+ public:
+  explicit FileBuffer(TemporaryFile& file) : file_(file), bytes_(kBytes) { setp(bytes_.data(), bytes_.data() + bytes_.size()); }
+
+ protected:
+  int_type overflow(int_type c) override {
+    drain();
+    if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
+    return traits_type::not_eof(c);
+  }
+  std::streamsize xsputn(const char* from, std::streamsize count) override {
+    if (count <= epptr() - pptr()) return std::streambuf::xsputn(from, count);
+    drain();
+    file_.write(from, static_cast<size_t>(count));
+    return count;
+  }
+  int sync() override {
+    drain();
+    return 0;
+  }
+  pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override {
+    drain();
+    return pos_type(file_.seek(offset, from == std::ios_base::beg ? SEEK_SET : from == std::ios_base::cur ? SEEK_CUR : SEEK_END));
+  }
+  pos_type seekpos(pos_type at, std::ios_base::openmode which) override { return seekoff(off_type(at), std::ios_base::beg, which); }
+
+ private:
+  void drain() {
+    const auto count = static_cast<size_t>(pptr() - pbase());
+    setp(bytes_.data(), bytes_.data() + bytes_.size());
+    file_.write(bytes_.data(), count);
+  }
+  static constexpr size_t kBytes = size_t{1} << 18;
+  TemporaryFile& file_;
+  std::vector<char> bytes_;
+};
+
 }  // namespace
+
+struct AtomicFile::Impl {
+  explicit Impl(const std::string& path) : target(findTarget(path)), file(target, path), buffer(file), stream(&buffer) {
+    // Without this a stream would swallow what its buffer throws.
+    stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
+  }
+  Target target;
+  TemporaryFile file;
+  FileBuffer buffer;
+  std::ostream stream;
+};
+
+AtomicFile::AtomicFile(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+AtomicFile::~AtomicFile() = default;
+std::ostream& AtomicFile::stream() { return impl_->stream; }
+
+uint64_t AtomicFile::commit() {
+  impl_->stream.flush();
+  const auto bytes = static_cast<uint64_t>(impl_->file.seek(0, SEEK_END));
+  impl_->file.flush();
+  impl_->file.commitAs(impl_->target.file);
+  return bytes;
+}
 
 void writeFileAtomically(const std::string& path, const std::string& bytes) {
   const Target target = findTarget(path);
   TemporaryFile file(target, path);
-  file.write(bytes);
+  file.write(bytes.data(), bytes.size());
+  file.flush();
   file.commitAs(target.file);
 }
 

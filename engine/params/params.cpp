@@ -35,6 +35,7 @@ std::string describeAllowed(const Param& param) {
     case Type::Float:
       return "give a number from " + printLimit(param.range.min) + " to " + printLimit(param.range.max);
     case Type::Choice:
+    case Type::Text:
       break;
   }
   std::string text = "give one of";
@@ -69,6 +70,7 @@ bool parseValue(const Param& param, std::string_view text, double& value, std::s
     }
     case Type::UInt:
     case Type::Float:
+    case Type::Text:
       break;
   }
   if (!parseNumber(text, value) || std::isnan(value)) {
@@ -145,6 +147,21 @@ Param choiceIndex(std::string name, std::function<uint32_t()> get, std::function
   return p;
 }
 
+Param text(std::string name, std::string* value, std::string help, Invalidates invalidates, std::function<void(const std::string&)> check) {
+  Param p;
+  p.name = std::move(name);
+  p.type = Type::Text;
+  p.help = std::move(help);
+  p.invalidates = invalidates;
+  p.get = [value] { return *value; };
+  p.setText = [value, check = std::move(check)](const std::string& v) {
+    if (check) check(v);
+    *value = v;
+  };
+  p.defaultValue = *value;
+  return p;
+}
+
 Param swept(Param param, std::vector<std::string> values, std::string exact) {
   param.sweep = std::move(values);
   param.exact = std::move(exact);
@@ -169,13 +186,21 @@ Invalidates Table::set(std::string_view owner, std::string_view name, std::strin
     }
     throw Error(ErrorCode::BadInput, message);
   }
-  double value = 0;
-  std::string why;
-  if (!parseValue(*param, text, value, why)) {
-    throw Error(ErrorCode::BadInput, place + " = " + std::string(text) + ": " + why + "; " + describeAllowed(*param));
-  }
   const std::string before = param->get();
-  param->setNumber(value);
+  if (param->type == Type::Text) {
+    try {
+      param->setText(std::string(text));
+    } catch (const Error& error) {
+      throw Error(error.code(), place + " = " + std::string(text) + ": " + error.what());
+    }
+  } else {
+    double value = 0;
+    std::string why;
+    if (!parseValue(*param, text, value, why)) {
+      throw Error(ErrorCode::BadInput, place + " = " + std::string(text) + ": " + why + "; " + describeAllowed(*param));
+    }
+    param->setNumber(value);
+  }
   if (param->get() != before && param->invalidates != Invalidates::Frame) {
     ++version_;
     if (param->invalidates == Invalidates::Plan) ++planVersion_;

@@ -24,7 +24,7 @@ enum class Invalidates {
   Frame,  ///< only the next frame (view settings)
 };
 
-enum class Type { Bool, UInt, Float, Choice };
+enum class Type { Bool, UInt, Float, Choice, Text };
 
 struct Range {
   double min = 0;
@@ -42,7 +42,8 @@ struct Param {
   std::vector<std::string> sweep;  ///< values that trade time for quality, cheapest first; empty: not what the value is for
   std::string exact;               ///< the value that makes least error of its own, whatever it costs; may lie outside `sweep`
   std::function<std::string()> get;
-  std::function<void(double)> setNumber;  ///< already checked; Choice takes the index, Bool 0 or 1
+  std::function<void(double)> setNumber;            ///< already checked; Choice takes the index, Bool 0 or 1
+  std::function<void(const std::string&)> setText;  ///< Text only; throws BadInput, without the place, where the text will not do
 };
 
 Param flag(std::string name, bool* value, std::string help, Invalidates invalidates);
@@ -50,6 +51,9 @@ Param number(std::string name, uint32_t* value, Range range, std::string help, I
 Param number(std::string name, float* value, Range range, std::string help, Invalidates invalidates);
 Param choiceIndex(std::string name, std::function<uint32_t()> get, std::function<void(uint32_t)> set, std::vector<std::string> names,
                   std::string help, Invalidates invalidates);
+/// Any text: a file name, a list of names. `check`, where given, throws BadInput for a text that will not do.
+Param text(std::string name, std::string* value, std::string help, Invalidates invalidates,
+           std::function<void(const std::string&)> check = {});
 /// Enum whose enumerators count from 0 in the order of `names`.
 template <class E>
 Param choice(std::string name, E* value, std::vector<std::string> names, std::string help, Invalidates invalidates) {

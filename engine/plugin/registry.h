@@ -11,7 +11,7 @@
 #include "engine/graph/node.h"
 
 // Count up with every change of a class in engine/graph/node.h, resource.h, engine/params, engine/plugin, engine/gpu or engine/error.h.
-#define RADIVOX_ABI_VERSION 1
+#define RADIVOX_ABI_VERSION 2
 #define RADIVOX_TEXT_(x) #x
 #define RADIVOX_TEXT(x) RADIVOX_TEXT_(x)
 #if defined(_LIBCPP_VERSION)

@@ -65,6 +65,7 @@ Traits Scene::traits() const {
     if ((material.flags & shared::kMaterialAlphaMask) != 0u) t.alphaMasked = true;
     if ((material.flags & shared::kMaterialDoubleSided) == 0u) t.singleSided = true;
   }
+  t.origin = origin;
   t.sky = skyRadiance != glm::vec3(0.f);
   if (!indices.empty()) {
     t.boundsMin = t.boundsMax = vertices[indices[0]].position;

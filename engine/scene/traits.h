@@ -23,6 +23,7 @@ struct Traits {
   bool alphaMasked = false;  ///< some material has alphaMode MASK
   bool singleSided = false;  ///< some material is not double-sided
   bool sky = false;          ///< constant sky radiance above 0
+  glm::dvec3 origin{0.0};    ///< Scene::origin: world coordinates = origin + what nodes see; for files that others place
   glm::vec3 boundsMin{0.f};  ///< metres, relative to the scene origin (Scene::origin)
   glm::vec3 boundsMax{0.f};
   double surfaceArea = 0.0;   ///< m², one side of each triangle

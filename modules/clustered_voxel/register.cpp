@@ -14,6 +14,7 @@
 #include "modules/clustered_voxel/visibility/transfer.h"
 #include "modules/clustered_voxel/visibility/visibility.h"
 #include "modules/clustered_voxel/voxelize/faces.h"
+#include "modules/clustered_voxel/voxelize/fragments.h"
 #include "modules/clustered_voxel/voxelize/surface.h"
 #include "modules/clustered_voxel/voxelize/triangles.h"
 #include "modules/clustered_voxel/voxelize/voxelize.h"
@@ -27,6 +28,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Faces>("which of a voxel's six faces carry surface");
   registry.add<Surface>("area, albedo, mean normal, position and emission of voxel faces");
   registry.add<Triangles>("which triangles meet each voxel, for rays that start close by");
+  registry.add<Fragments>("how many triangles meet in a voxel, and their mean normal");
   registry.add<Visibility>("what each voxel face sees: form factors by counting rays");
   registry.add<Cluster>("groups faces that lie near each other and face the same way");
   registry.add<Members>("what each cluster holds, and its means");

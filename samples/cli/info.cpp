@@ -114,6 +114,9 @@ void printParams(const params::Table& table) {
       case params::Type::Choice:
         for (const std::string& choice : param.choices) allowed += (allowed.empty() ? "" : ", ") + choice;
         break;
+      case params::Type::Text:
+        allowed = "text";
+        break;
     }
     std::cout << "    " << param.name << " = " << param.defaultValue << "  (" << allowed << ")  " << param.help << "\n";
   }

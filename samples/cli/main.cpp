@@ -107,6 +107,29 @@ void addReportOptions(CLI::App* report, report::ReportOptions& reportOptions, Op
   addRepeated(report, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
 }
 
+void addVdbOptions(CLI::App* command, Options& options, VdbOptions& vdb) {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
+  addRepeated(command, "--out", options.outputs, "OpenVDB or NanoVDB file to write", "FILE.vdb|.nvdb");
+  command->add_option("--grids", vdb.grids, "what to write, or `help` for the list; only what it needs is computed (default: default)")
+      ->type_name("NAME[,NAME...]");
+  command
+      ->add_option("--faces", vdb.faces, "of indirect and error: all voxel faces (default), or view: those that the camera's picture needs")
+      ->type_name("all|view");
+  command->add_option("--up", vdb.up, "y (default): axes as in the scene and in Houdini; z: as Blender turns glTF files")->type_name("y|z");
+  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
+      ->type_name("NAME|FILE.json");
+  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
+  addRepeated(command, "--set", options.sets, "one parameter, as in voxelize.resolution=64; may be repeated", "node.param=value");
+  command->add_option("--bounces", options.bounces, "indirect bounces: a number, or all (default), the converged solution")
+      ->type_name("N|all");
+  command->add_option("--camera", options.camera, "of --faces view (default: the first)")->type_name("NAME|INDEX");
+  command->add_option("--size", options.size, "pixels of --faces view (default: 960x540)")->type_name("WxH");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+  command->add_option("--print", vdb.print, "instead: what a .vdb or .nvdb file holds")->type_name("FILE");
+  command->add_option("--diff", vdb.diff, "instead: how two such files differ, grid by grid")->type_name("A B")->expected(2);
+}
+
 /// Words that no option of the command took. CLI11's own report knows no nearest name.
 void refuseExtras(const CLI::App& command, const std::string& what) {
   const std::vector<std::string> extras = command.remaining();
@@ -168,6 +191,9 @@ int run(int argc, char** argv) {
   report::ReportOptions reportOptions;
   CLI::App* report = app.add_subcommand("report", "error against run time: every method and preset on these scenes, as report.html");
   addReportOptions(report, reportOptions, options);
+  VdbOptions vdbOptions;
+  CLI::App* vdb = app.add_subcommand("vdb", "write voxels, clusters and their light as OpenVDB or NanoVDB; print and compare such files");
+  addVdbOptions(vdb, options, vdbOptions);
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
@@ -177,8 +203,8 @@ int run(int argc, char** argv) {
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "graph", "scene", "info"};
-  for (CLI::App* command : {render, reference, compare, report, graph, scene, info}) command->allow_extras();
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "vdb", "graph", "scene", "info"};
+  for (CLI::App* command : {render, reference, compare, report, vdb, graph, scene, info}) command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -192,7 +218,7 @@ int run(int argc, char** argv) {
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
     throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, graph, scene or info, or see `radivox --help`");
+                "a command is missing; give render, reference, compare, report, vdb, graph, scene or info, or see `radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -201,6 +227,9 @@ int run(int argc, char** argv) {
   catchInterrupts();
   if (command == info) return runInfo(options);
   if (command == compare) return runCompare(options);
+  if (command == vdb && (!options.scene.empty() || vdbOptions.grids == "help" || !vdbOptions.print.empty() || !vdbOptions.diff.empty())) {
+    return runVdb(options, vdbOptions);
+  }
   if (command == report && !reportOptions.scenes.empty()) return report::runReport(reportOptions, options);
   if (command == scene && options.scene.empty()) {
     throw Error(ErrorCode::BadInput,

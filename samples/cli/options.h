@@ -52,6 +52,15 @@ struct ReferenceOptions {
   bool halves = false;
 };
 
+/// What `radivox vdb` takes beside SCENE, --graph and the like, and --out.
+struct VdbOptions {
+  std::string grids;              ///< empty: the default
+  std::string faces = "all";      ///< or "view"
+  std::string up = "y";           ///< or "z"
+  std::string print;              ///< instead: this file
+  std::vector<std::string> diff;  ///< instead: these two
+};
+
 struct Size {
   uint32_t width = 0, height = 0;
 };
@@ -67,6 +76,7 @@ std::vector<std::string> parseList(const std::string& option, const std::string&
 
 int runRender(const Options& options);
 int runReference(const Options& options, const ReferenceOptions& reference);
+int runVdb(const Options& options, const VdbOptions& vdb);
 int runGraph(const Options& options);
 int runScene(const Options& options);
 int runInfo(const Options& options);

@@ -32,6 +32,7 @@ void addParams(const std::string& owner, const params::Table& table, ordered_jso
         value = std::stod(text);
         break;
       case params::Type::Choice:
+      case params::Type::Text:
         value = text;
         break;
     }

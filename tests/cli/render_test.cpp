@@ -111,7 +111,7 @@ TEST_F(RenderCommand, ZeroBouncesLeaveTheIndirectChainOut) {
   }
   EXPECT_EQ(find(layers, "color")->image.data, find(layers, "direct")->image.data);
   const json stats = json::parse(read("a.json"));
-  for (const char* node : {"voxelize", "cluster", "visibility", "bounce", "gather", "shade"}) {
+  for (const char* node : {"voxelize", "cluster", "triangles", "visibility", "bounce", "gather_pixels"}) {
     EXPECT_TRUE(stats.at("culled").contains(node)) << node;
     EXPECT_FALSE(stats.at("nodes").contains(node)) << node;
   }
@@ -140,7 +140,7 @@ TEST_F(RenderCommand, StatisticsSayWhatRan) {
     const std::string node = name.substr(0, name.find('.'));
     const bool voxel =
         stats.at("nodes").contains(node) && stats.at("nodes").at(node).at("type").get<std::string>().rfind("clustered_voxel.", 0) == 0;
-    if (voxel && name != "shade.irradiance") owned += resource.at("bytes").get<double>();
+    if (voxel && resource.at("shape").get<std::string>().find("width") == std::string::npos) owned += resource.at("bytes").get<double>();
   }
   EXPECT_GT(owned, 0.0);
   EXPECT_DOUBLE_EQ(stats.at("bytes_per_voxel").get<double>(), owned / stats.at("counts").at("voxels").get<double>());

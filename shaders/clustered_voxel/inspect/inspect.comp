@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 // The voxel face that a pixel's surface belongs to: in its own voxel, of the direction nearest to its normal that is there.
 #include "shared/dispatch.glsl"
+#include "shared/id_colour.h"
 #include "clustered_voxel/structure.glsl"
 
 layout(local_size_x = 64) in;
@@ -16,14 +17,6 @@ layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
 };
-
-// A bright colour from an integer hash.
-vec3 colourOf(uint id) {
-  uint h = id * 747796405u + 2891336453u;
-  h = ((h >> ((h >> 28) + 4u)) ^ h) * 277803737u;
-  h = (h >> 22) ^ h;
-  return 0.15 + 0.85 * vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;
-}
 
 void main() {
   uint i = radivoxItemIndex();
@@ -45,7 +38,7 @@ void main() {
       }
     if (best != kNone)
       result = kWhat == 0 ? vec4(float(best) + 1.0, float(voxel), float(faces[best].key & 7u), faces[best].area)
-                          : vec4(colourOf(labels[best]), float(labels[best]) + 1.0);
+                          : vec4(colourOfId(labels[best]), float(labels[best]) + 1.0);
   }
   imageStore(outImage, pixel, result);
 }
