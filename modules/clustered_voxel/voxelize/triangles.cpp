@@ -77,7 +77,6 @@ void Triangles::record(graph::RecordContext& context) {
     commands.dispatchItems(voxelCount, 64);
     if (context.has("pieces")) {
       commands.barrier();
-      const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
       commands.bind(pieces_, {context.buffer("grid"), context.buffer("scene.vertices"), context.buffer("scene.indices"),
                               context.buffer("voxels"), first, *context.grown("ids").front(), *context.grown("pieces").front()});
       const struct { uint32_t voxelCount, entryCount; } push{voxelCount, static_cast<uint32_t>(context.count("triangle_entries"))};
