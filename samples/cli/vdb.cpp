@@ -115,6 +115,8 @@ int writeVdb(Options options, const VdbOptions& vdb) {
   if (vdb.faces == "all") options.size = "16x16";
   std::unique_ptr<gpu::Device> device;  // outlives the job, whose nodes hold pipelines
   Job job;
+  // The graph that gathers by faces: the one that has every grid.
+  if (!options.graph && options.presets.empty()) options.graph = "clustered_voxel";
   prepareJob(options, false, job);
   addSink(options, vdb, grids, job);
   if ((vdb::needsOf(grids) & vdb::NeedError) != 0) job.request.aovs.insert("error");
