@@ -285,7 +285,8 @@ RADIVOX_API RadivoxResult radivoxImportBuffer(RadivoxRenderer* renderer, const c
                                               uint64_t version);
 
 /* Runs what is stale on Radivox's own command buffers, and waits. The first frame, and every frame that radivoxIsReadyToRecord refuses.
- * `progress` (may be NULL) is called from this thread, must call nothing of this renderer, and ends the run by returning VK_FALSE. */
+ * `progress` (may be NULL) is called from this thread, must call nothing of this renderer, and ends the run soon by returning VK_FALSE: the
+ * next one goes on where it ended. */
 typedef VkBool32 (*RadivoxProgress)(void* user, const char* node, double fraction);
 RADIVOX_API RadivoxResult radivoxRun(RadivoxRenderer* renderer, RadivoxProgress progress, void* user);
 

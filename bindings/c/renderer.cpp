@@ -170,6 +170,7 @@ void Renderer::run(RadivoxProgress progress, void* user) {
     if (!goesOn) throw Interrupted{};
     throw;
   }
+  if (!goesOn) throw Interrupted{};
 }
 
 bool Renderer::isReadyToRecord() {
