@@ -107,11 +107,11 @@ typedef enum RadivoxMaterialFlags {
 #define RADIVOX_NO_TEXTURE 0xffffffffu
 
 typedef struct RadivoxMaterial {
-  float albedo[3];         /* in [0, 0.999]; above is lowered */
-  float alpha;             /* factor of the texture's */
-  float emission[3];       /* radiance, front side only: where the corners go counter-clockwise */
+  float albedo[3];   /* in [0, 0.999]; above is lowered */
+  float alpha;       /* factor of the texture's */
+  float emission[3]; /* radiance, front side only: where the corners go counter-clockwise */
   float alphaCutoff;
-  uint32_t albedoTexture;  /* index, or RADIVOX_NO_TEXTURE */
+  uint32_t albedoTexture; /* index, or RADIVOX_NO_TEXTURE */
   uint32_t emissionTexture;
   uint32_t flags; /* RadivoxMaterialFlags */
 } RadivoxMaterial;
@@ -237,8 +237,8 @@ RADIVOX_API RadivoxResult radivoxDescribeParameter(RadivoxGraph* graph, uint32_t
 #define RADIVOX_ALL_BOUNCES 0xffffffffu
 
 typedef struct RadivoxImport {
-  const char* name;    /* "host.position" */
-  VkFormat format;     /* of an image of the picture's size; VK_FORMAT_UNDEFINED: a buffer */
+  const char* name; /* "host.position" */
+  VkFormat format;  /* of an image of the picture's size; VK_FORMAT_UNDEFINED: a buffer */
   uint32_t bufferBytes;
 } RadivoxImport;
 

@@ -90,8 +90,8 @@ Renderer::Imported& Renderer::findImport(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [known, imported] : imports_) names.push_back(known);
   const std::string near = params::nearestName(name, names);
-  throw Error(ErrorCode::BadInput, name + ": no such import; " +
-                                       (near.empty() ? "name it in RadivoxRendererInfo::imports" : "did you mean " + near + "?"));
+  throw Error(ErrorCode::BadInput,
+              name + ": no such import; " + (near.empty() ? "name it in RadivoxRendererInfo::imports" : "did you mean " + near + "?"));
 }
 
 void Renderer::setCamera(const scene::CameraDescription& camera) {

@@ -61,8 +61,9 @@ glm::vec3 takeSky(const float (&radiance)[3]) {
 
 uint32_t takeTextureIndex(uint32_t texture, uint32_t textureCount, uint32_t material) {
   if (texture != RADIVOX_NO_TEXTURE && texture >= textureCount) {
-    refuse("materials", material, " names texture " + std::to_string(texture) + " of " + std::to_string(textureCount) +
-                                      "; write RADIVOX_NO_TEXTURE where there is none");
+    refuse("materials", material,
+           " names texture " + std::to_string(texture) + " of " + std::to_string(textureCount) +
+               "; write RADIVOX_NO_TEXTURE where there is none");
   }
   return texture;
 }
@@ -126,11 +127,12 @@ scene::Scene takeScene(const RadivoxSceneInfo& info) {
     }
   }
   scene.triangleMaterials.resize(info.triangleCount);
-  if (info.triangleMaterials != nullptr) scene.triangleMaterials.assign(info.triangleMaterials, info.triangleMaterials + info.triangleCount);
+  if (info.triangleMaterials != nullptr)
+    scene.triangleMaterials.assign(info.triangleMaterials, info.triangleMaterials + info.triangleCount);
   for (uint32_t i = 0; i < info.triangleCount; ++i) {
     if (scene.triangleMaterials[i] >= info.materialCount) {
-      refuse("triangleMaterials", i, " is " + std::to_string(scene.triangleMaterials[i]) + ", and there are " +
-                                         std::to_string(info.materialCount) + " materials");
+      refuse("triangleMaterials", i,
+             " is " + std::to_string(scene.triangleMaterials[i]) + ", and there are " + std::to_string(info.materialCount) + " materials");
     }
   }
   for (uint32_t i = 0; i < info.materialCount; ++i) {
@@ -160,7 +162,8 @@ scene::CameraDescription takeCamera(const RadivoxCamera* given) {
   camera.zfar = taken.farPlane;
   const float length = glm::length(camera.orientation);
   if (!isFinite(camera.position)) throw Error(ErrorCode::BadInput, "camera->position is not finite");
-  if (!(length > 1e-3f) || !std::isfinite(length)) throw Error(ErrorCode::BadInput, "camera->orientation is no quaternion; write 0, 0, 0, 1");
+  if (!(length > 1e-3f) || !std::isfinite(length))
+    throw Error(ErrorCode::BadInput, "camera->orientation is no quaternion; write 0, 0, 0, 1");
   if (!(camera.znear > 0)) throw Error(ErrorCode::BadInput, "camera->nearPlane must be above 0");
   if (camera.orthographic ? !(camera.ymag > 0 && camera.zfar > camera.znear) : !(camera.yfov > 0 && camera.yfov < 3.14159f)) {
     throw Error(ErrorCode::BadInput, camera.orthographic ? "camera->halfHeight must be above 0, farPlane above nearPlane"
@@ -211,9 +214,7 @@ RadivoxResult radivoxGetCamera(const RadivoxScene* scene, uint32_t index, Radivo
   });
 }
 
-uint32_t radivoxLightCount(const RadivoxScene* scene) {
-  return scene == nullptr ? 0 : static_cast<uint32_t>(scene->scene->lights.size());
-}
+uint32_t radivoxLightCount(const RadivoxScene* scene) { return scene == nullptr ? 0 : static_cast<uint32_t>(scene->scene->lights.size()); }
 
 RadivoxResult radivoxGetLight(const RadivoxScene* scene, uint32_t index, RadivoxLight* light) {
   return guarded([&] {

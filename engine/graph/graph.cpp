@@ -44,8 +44,8 @@ Node* Graph::find(std::string_view name) const {
 void Graph::replaceByImports(std::string_view name, std::string_view import) {
   if (find(name) == nullptr) throw Error(ErrorCode::BadInput, describeUnknown(name));
   if (import.empty() || import.find('.') != std::string_view::npos || find(import) != nullptr) {
-    throw Error(ErrorCode::BadInput, "\"" + std::string(import) + "\" cannot stand for " + std::string(name) +
-                                         "; use a name without dots that no node has");
+    throw Error(ErrorCode::BadInput,
+                "\"" + std::string(import) + "\" cannot stand for " + std::string(name) + "; use a name without dots that no node has");
   }
   for (const Endpoint& output : outputs_) {
     if (output.node == name) {

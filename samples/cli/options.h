@@ -70,6 +70,7 @@ int runReference(const Options& options, const ReferenceOptions& reference);
 int runGraph(const Options& options);
 int runScene(const Options& options);
 int runInfo(const Options& options);
+int runNodes(const Options& options);
 int runCompare(const Options& options);
 
 }  // namespace radivox::cli

@@ -59,8 +59,8 @@ Gi::Gi(const Host& host, HostGBuffer& gbuffer, const scene::Scene& scene, const 
   traits_ = scene::traitsFor(scene, {});
   std::vector<graph::Import> imports = gpuScene_->imports();
   for (int i = 0; i < HostGBuffer::Count; ++i) {
-    imports.push_back({kImports[i],
-                       graph::Shape::image(gbuffer.images[i].format, graph::Extent::of("width"), graph::Extent::of("height"))});
+    imports.push_back(
+        {kImports[i], graph::Shape::image(gbuffer.images[i].format, graph::Extent::of("width"), graph::Extent::of("height"))});
   }
   graph::Plan plan = graph::compile(graph_, {traits_, request_, device_->capabilities(), imports, gpuScene_->counts()});
   executor_ = std::make_unique<graph::Executor>(*device_, graph_, std::move(plan), traits_, request_, gpuScene_->counts());

@@ -7,7 +7,8 @@ void check(VkResult result, const char* call) {
   if (result < 0) throw std::runtime_error(std::string(call) + " failed: " + std::to_string(result));
 }
 
-Host::Host(uint32_t width_, uint32_t height_, const std::function<DeviceWishes(VkPhysicalDevice)>& wishes) : width(width_), height(height_) {
+Host::Host(uint32_t width_, uint32_t height_, const std::function<DeviceWishes(VkPhysicalDevice)>& wishes)
+    : width(width_), height(height_) {
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "embed";
   application.apiVersion = VK_API_VERSION_1_3;

@@ -30,11 +30,11 @@ std::string readGraph(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-#define EXPECT_FAILS(result, call, words)                                                                 \
-  do {                                                                                                    \
-    EXPECT_EQ(call, result) << radivoxLastError();                                                        \
-    EXPECT_NE(std::string(radivoxLastError()).find(words), std::string::npos) << radivoxLastError();      \
-    EXPECT_EQ(std::string(radivoxLastError()).find('\n'), std::string::npos) << "not one line";           \
+#define EXPECT_FAILS(result, call, words)                                                            \
+  do {                                                                                               \
+    EXPECT_EQ(call, result) << radivoxLastError();                                                   \
+    EXPECT_NE(std::string(radivoxLastError()).find(words), std::string::npos) << radivoxLastError(); \
+    EXPECT_EQ(std::string(radivoxLastError()).find('\n'), std::string::npos) << "not one line";      \
   } while (false)
 #define ASSERT_WORKS(call) ASSERT_EQ(call, RADIVOX_OK) << radivoxLastError()
 
@@ -196,12 +196,22 @@ TEST_F(CInterface, ScenesOfTheHostAreLitAsFilesAre) {
   std::vector<RadivoxMaterial> materials;
   for (const auto& m : scene.materials) {
     const uint32_t flags = (m.flags & radivox::shared::kMaterialDoubleSided) != 0 ? RADIVOX_MATERIAL_DOUBLE_SIDED : 0;
-    materials.push_back({{m.albedo.x, m.albedo.y, m.albedo.z}, m.alpha, {m.emission.x, m.emission.y, m.emission.z}, m.alphaCutoff,
-                         RADIVOX_NO_TEXTURE, RADIVOX_NO_TEXTURE, flags});
+    materials.push_back({{m.albedo.x, m.albedo.y, m.albedo.z},
+                         m.alpha,
+                         {m.emission.x, m.emission.y, m.emission.z},
+                         m.alphaCutoff,
+                         RADIVOX_NO_TEXTURE,
+                         RADIVOX_NO_TEXTURE,
+                         flags});
   }
   const auto& l = scene.lights.at(0);
-  const RadivoxLight light = {RADIVOX_LIGHT_POINT, {l.position.x, l.position.y, l.position.z}, {0, -1, 0},
-                              {l.intensity.x, l.intensity.y, l.intensity.z}, l.range, 0, 0};
+  const RadivoxLight light = {RADIVOX_LIGHT_POINT,
+                              {l.position.x, l.position.y, l.position.z},
+                              {0, -1, 0},
+                              {l.intensity.x, l.intensity.y, l.intensity.z},
+                              l.range,
+                              0,
+                              0};
   auto sceneInfo = make<RadivoxSceneInfo>();
   sceneInfo.vertexCount = static_cast<uint32_t>(vertices.size());
   sceneInfo.vertices = vertices.data();
