@@ -1,7 +1,7 @@
-// A host with a device, a renderer and frames of its own, and global illumination inside: embed SCENE OUT.exr [WIDTHxHEIGHT [FOG.so]]
+// A host with a device, a renderer and frames of its own, and global illumination inside: embed SCENE OUT.exr|.png [WIDTHxHEIGHT [FOG.so]]
 #include <cstdio>
-#include <cstring>
 #include <exception>
+#include <string>
 
 #include "engine/image/image.h"
 #include "gi.h"
@@ -42,13 +42,16 @@ void writePicture(const char* path, const HostBuffer& pixels, const Host& host) 
   radivox::image::Image image{host.width, host.height, 3, {}};
   const auto* rgba = static_cast<const float*>(pixels.mapped);
   for (size_t i = 0; i < size_t{host.width} * host.height; ++i) image.data.insert(image.data.end(), rgba + 4 * i, rgba + 4 * i + 3);
+  if (std::string(path).ends_with(".png")) {
+    return radivox::image::writePng(path, radivox::image::scaled(image, radivox::image::exposureOf(image)));
+  }
   radivox::image::writeExr(path, {{"color", image}});
 }
 
 int run(int argc, char** argv) {
   uint32_t width = 320, height = 180;
   if (argc < 3 || (argc > 3 && std::sscanf(argv[3], "%ux%u", &width, &height) != 2)) {
-    std::fprintf(stderr, "embed SCENE OUT.exr [WIDTHxHEIGHT [FOG.so]]\n");
+    std::fprintf(stderr, "embed SCENE OUT.exr|.png [WIDTHxHEIGHT [FOG.so]]\n");
     return 2;
   }
   radivox::scene::Scene scene = radivox::scene::loadScene(argv[1]);

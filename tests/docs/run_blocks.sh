@@ -74,16 +74,19 @@ for argument in "$@"; do
     --size) argument=64x36 ;;
     --spp) argument=2 ;;
     --time-limit) argument=2 ;;
+    --max-error) argument=100 ;; # what so short a calibration can promise
   esac
   next=$argument
   arguments+=("$argument")
 done
 has() { [[ " ${arguments[*]} " == *" $1 "* ]]; }
 case ${1:-} in
-  render | reference | report) has --size || has --resume || arguments+=(--size 64x36) ;;
+  render | reference | report) has --size || arguments+=(--size 64x36) ;;
 esac
-[[ ${1:-} == reference ]] && { has --spp || has --resume || arguments+=(--spp 2); }
+[[ ${1:-} == reference ]] && { has --spp || arguments+=(--spp 2); }
 [[ ${1:-} == render ]] && { has --max-error || has --budget-ms; } && arguments+=(--calibration-time 2)
+[[ ${1:-} == render ]] && ! has --max-error && ! has --budget-ms && ! has --graph && ! has voxelize.resolution=64 &&
+  arguments+=(--set voxelize.resolution=32)
 exec "$RADIVOX_BINARY" "${arguments[@]}"
 WRAPPER
 }
@@ -116,10 +119,10 @@ run() {
     blocks "$document" | while IFS=$'\t' read -r line language mark text; do
       if [[ $language == sh && $mark != '<!-- sh: left out'* && -n $text ]]; then
         # A command that goes on in the next line keeps its first line's number.
-        [[ ${continues:-} == 1 ]] || echo "LINE=$line"
+        if [[ ${continues:-} != 1 ]]; then echo "LINE=$line"; fi
         echo "$text"
         continues=0
-        [[ $text == *\\ ]] && continues=1
+        if [[ $text == *\\ ]]; then continues=1; fi
       fi
     done
   } >"$work/commands.sh"
