@@ -71,7 +71,7 @@ wrap() { # the command, small and short
 arguments=() next=""
 for argument in "$@"; do
   case $next in
-    --size) argument=64x36 ;;
+    --size) [[ ${argument%%x*} -le 160 ]] || argument=64x36 ;;
     --spp) argument=2 ;;
     --time-limit) argument=2 ;;
     --max-error) argument=100 ;; # what so short a calibration can promise
@@ -114,7 +114,7 @@ run() {
   wrap >"$work/bin/radivox"
   chmod +x "$work/bin/radivox"
   {
-    echo 'set -euo pipefail'
+    echo 'set -euo pipefail; PS4="+ \${SECONDS}s "; set -x'
     echo "trap 'echo \"$document: line \$LINE fails\" >&2' ERR"
     blocks "$document" | while IFS=$'\t' read -r line language mark text; do
       if [[ $language == sh && $mark != '<!-- sh: left out'* && -n $text ]]; then
