@@ -3,6 +3,7 @@
 #
 #   check  Every fenced block says what it is. ```sh is run; what is only to be read (a synopsis) is ```text; a command must not hide there
 #          without its options in brackets. ```cpp after <!-- from: FILE --> stands in that file, line by line.
+#   prove  (run_blocks.sh prove WORK_FOLDER) Documents that are wrong are found out.
 #   run    All ```sh blocks of a document, in its order, by one shell in one folder that looks like the project's. The commands are as
 #          printed, but pictures are made small and times short (the wrapper below). Nothing is installed on the machine.
 #
@@ -133,6 +134,28 @@ run() {
   fi
   cd "$work/project"
   bash "$work/commands.sh" || fail "$document: what it tells to type does not work (above)"
+}
+
+prove() {
+  local work=$1 self=$source/tests/docs/run_blocks.sh name
+  rm -rf "$work"
+  mkdir -p "$work/bin"
+  cd "$work"
+  printf '```\nradivox info\n```\n' >unlabelled.md
+  printf '```text\nradivox info\n```\n' >hidden.md
+  printf '<!-- sh: left out: no time -->\n```sh\nfalse\n```\n' >excused.md
+  printf '<!-- from: samples/embed/gi.cpp -->\n```cpp\n  int notThere = 3;\n```\n' >stale.md
+  for name in unlabelled hidden excused stale; do
+    "$self" check "$name.md" >log && fail "$name.md was accepted"
+    grep -q "^$name.md:" log || fail "$name.md: its place is not named: $(cat log)"
+  done
+  printf 'text\n\n```sh\necho one > file\n```\n\n<!-- sh: left out: it is what runs this test -->\n```sh\nfalse\n```\n' >right.md
+  "$self" check right.md || fail "right.md was refused"
+  "$self" run "$work/right.md" "$work" "$work/run" 2>/dev/null || fail "right.md failed"
+  [[ $(cat run/project/file) == one ]] || fail "right.md was not run"
+  printf '```sh\ntrue\nfalse # fails\n```\n' >wrong.md
+  "$self" run "$work/wrong.md" "$work" "$work/run" 2>log && fail "wrong.md passed"
+  grep -q "wrong.md: line 3 fails" log || fail "wrong.md: its line is not named: $(cat log)"
 }
 
 "$@"
