@@ -78,6 +78,9 @@ Buffer::Buffer(Device& device, const std::string& name, VkDeviceSize bytes, VkDe
   device.setName(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer_), name);
 }
 
+Buffer::Buffer(const std::string& name, VkBuffer buffer, VkDeviceSize bytes, VkDeviceAddress address)
+    : buffer_(buffer), bytes_(bytes), address_(address), name_(name) {}
+
 Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {

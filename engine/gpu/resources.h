@@ -30,6 +30,8 @@ class Buffer {
   Buffer(Device& device, const std::string& name, VkDeviceSize bytes, MemoryKind kind = MemoryKind::Device);
   /// A buffer bound into memory that the caller owns (transient aliasing) and allocated with a device address.
   Buffer(Device& device, const std::string& name, VkDeviceSize bytes, VkDeviceMemory memory, VkDeviceSize offset);
+  /// A host's buffer, for imports: usage STORAGE at least. Not destroyed by us. `address` 0: nothing may read it by address.
+  Buffer(const std::string& name, VkBuffer buffer, VkDeviceSize bytes, VkDeviceAddress address);
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
   ~Buffer();

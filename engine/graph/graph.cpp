@@ -46,6 +46,33 @@ Node* Graph::find(std::string_view name) const {
   return nullptr;
 }
 
+void Graph::replaceByImports(std::string_view name, std::string_view import) {
+  if (find(name) == nullptr) throw Error(ErrorCode::BadInput, describeUnknown(name));
+  if (import.empty() || import.find('.') != std::string_view::npos || find(import) != nullptr) {
+    throw Error(ErrorCode::BadInput,
+                "\"" + std::string(import) + "\" cannot stand for " + std::string(name) + "; use a name without dots that no node has");
+  }
+  for (const Endpoint& output : outputs_) {
+    if (output.node == name) {
+      throw Error(ErrorCode::BadInput, output.print() + " is an output of the graph; the host has it already: leave it out");
+    }
+  }
+  const auto isOf = [&](const Endpoint& endpoint) { return endpoint.node == name; };
+  std::erase_if(edges_, [&](const Edge& edge) { return isOf(edge.to); });
+  for (Edge& edge : edges_) {
+    if (isOf(edge.from)) edge.from.node = import;
+  }
+  std::erase_if(aovs_, [&](const auto& aov) { return isOf(parseEndpoint(aov.second)); });
+  std::erase_if(nodes_, [&](const Entry& entry) { return entry.name == name; });
+}
+
+std::string Graph::describeUnknown(std::string_view name) const {
+  std::vector<std::string> names;
+  for (const Entry& entry : nodes_) names.push_back(entry.name);
+  const std::string near = params::nearestName(name, names);
+  return "no node is named " + std::string(name) + (near.empty() ? "; see `radivox graph` for the nodes" : "; did you mean " + near + "?");
+}
+
 params::Invalidates Graph::set(std::string_view nodeParam, std::string_view value) {
   const size_t dot = nodeParam.find('.');
   if (dot == std::string_view::npos) {
@@ -53,13 +80,7 @@ params::Invalidates Graph::set(std::string_view nodeParam, std::string_view valu
   }
   const std::string_view name = nodeParam.substr(0, dot);
   Node* node = find(name);
-  if (node == nullptr) {
-    std::vector<std::string> names;
-    for (const Entry& entry : nodes_) names.push_back(entry.name);
-    const std::string near = params::nearestName(name, names);
-    throw Error(ErrorCode::BadInput, std::string(nodeParam) + ": no node is named " + std::string(name) +
-                                         (near.empty() ? "; see `radivox graph` for the nodes" : "; did you mean " + near + "?"));
-  }
+  if (node == nullptr) throw Error(ErrorCode::BadInput, std::string(nodeParam) + ": " + describeUnknown(name));
   return node->params().set(name, nodeParam.substr(dot + 1), value);
 }
 

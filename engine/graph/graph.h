@@ -36,6 +36,9 @@ class Graph {
   void disconnect(std::string_view to);
   void output(std::string_view endpoint);  ///< kept alive and readable after the run
   void clearOutputs() { outputs_.clear(); }
+  /// What node `name` makes comes from the host: edges from "gbuffer.position" now come from the import "host.position" (with `import`
+  /// "host"), and the node goes, with all that names it. Throws BadInput with the nearest name, and where an output is its port.
+  void replaceByImports(std::string_view name, std::string_view import);
   /// What a picture of this graph can be asked for: AOV name → "node.port", or "node.port.w" for one channel (x, y, z, w) of an image.
   /// Only a table of names: nothing is kept alive by it (a host calls output() for the AOVs it wants).
   void setAov(std::string name, std::string endpoint) { aovs_[std::move(name)] = std::move(endpoint); }
@@ -62,6 +65,7 @@ class Graph {
   void applyPreset(std::string_view text, const std::string& source);
 
  private:
+  std::string describeUnknown(std::string_view name) const;
   std::vector<Entry> nodes_;
   std::vector<Edge> edges_;
   std::vector<Endpoint> outputs_;

@@ -7,6 +7,7 @@
 #include "engine/graph/node.h"
 #include "engine/scene/builtin.h"
 #include "samples/cli/assets.h"
+#include "samples/cli/describe.h"
 #include "samples/cli/job.h"
 
 namespace radivox::cli {
@@ -94,31 +95,9 @@ void printDevices() {
   }
 }
 
-std::string printNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 void printParams(const params::Table& table) {
   for (const params::Param& param : table.all()) {
-    std::string allowed;
-    switch (param.type) {
-      case params::Type::Bool:
-        allowed = "true, false";
-        break;
-      case params::Type::UInt:
-      case params::Type::Float:
-        allowed = printNumber(param.range.min) + " to " + printNumber(param.range.max);
-        break;
-      case params::Type::Choice:
-        for (const std::string& choice : param.choices) allowed += (allowed.empty() ? "" : ", ") + choice;
-        break;
-      case params::Type::Text:
-        allowed = "text";
-        break;
-    }
-    std::cout << "    " << param.name << " = " << param.defaultValue << "  (" << allowed << ")  " << param.help << "\n";
+    std::cout << "    " << param.name << " = " << param.defaultValue << "  (" << printAllowed(param) << ")  " << param.help << "\n";
   }
 }
 

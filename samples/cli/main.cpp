@@ -203,8 +203,11 @@ int run(int argc, char** argv) {
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "vdb", "graph", "scene", "info"};
-  for (CLI::App* command : {render, reference, compare, report, vdb, graph, scene, info}) command->allow_extras();
+  CLI::App* nodes = app.add_subcommand("nodes", "every node as it describes itself: ports and parameters");
+  addRepeated(nodes, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+  nodes->add_option("--format", options.format, "text (default) or markdown, all of it: docs/nodes.md")->type_name("NAME");
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "vdb", "graph", "scene", "info", "nodes"};
+  for (CLI::App* command : {render, reference, compare, report, vdb, graph, scene, info, nodes}) command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -218,7 +221,7 @@ int run(int argc, char** argv) {
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
     throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, vdb, graph, scene or info, or see `radivox --help`");
+                "a command is missing; give render, reference, compare, report, vdb, graph, scene, info or nodes, or see `radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -226,6 +229,7 @@ int run(int argc, char** argv) {
 
   catchInterrupts();
   if (command == info) return runInfo(options);
+  if (command == nodes) return runNodes(options);
   if (command == compare) return runCompare(options);
   if (command == vdb && (!options.scene.empty() || vdbOptions.grids == "help" || !vdbOptions.print.empty() || !vdbOptions.diff.empty())) {
     return runVdb(options, vdbOptions);

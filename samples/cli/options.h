@@ -80,6 +80,7 @@ int runVdb(const Options& options, const VdbOptions& vdb);
 int runGraph(const Options& options);
 int runScene(const Options& options);
 int runInfo(const Options& options);
+int runNodes(const Options& options);
 int runCompare(const Options& options);
 
 }  // namespace radivox::cli

@@ -25,7 +25,7 @@ TEST_F(Usage, HelpAndVersionAreNotErrors) {
     EXPECT_EQ(result.err, "") << what;
     EXPECT_NE(result.out.find("radivox"), std::string::npos) << what;
   }
-  for (const char* command : {"render", "reference", "compare", "report", "graph", "scene", "info"}) {
+  for (const char* command : {"render", "reference", "compare", "report", "graph", "scene", "info", "nodes"}) {
     const CommandResult result = runRadivox({command, "--help"});
     EXPECT_EQ(result.exitCode, 0) << command;
     EXPECT_NE(result.out.find("Usage"), std::string::npos) << result.out;

@@ -147,5 +147,39 @@ TEST_F(Preset, ErrorsNameTheirPlaceAndChangeNothing) {
   EXPECT_EQ(presetError(g, R"({"set": {"source": 1}})"), "p.json: set: \"source\" names no parameter; write node.param=value");
 }
 
+TEST_F(GraphJson, ImportsTakeTheNodesPlace) {
+  Graph graph = read(R"({
+    "nodes": {"scene_source": {"type": "test.source"}, "source": {"type": "test.source"}, "sink": {"type": "test.sink"}},
+    "edges": [["scene_source.out", "source.in"], ["source.out", "sink.in"]],
+    "aovs": {"color": "source.out", "other": "scene_source.out"}
+  })");
+  graph.replaceByImports("source", "host");
+  EXPECT_EQ(graph.find("source"), nullptr);
+  ASSERT_EQ(graph.edges().size(), 1u) << "edges into the node go with it";
+  EXPECT_EQ(graph.edges()[0].from.print(), "host.out");
+  EXPECT_EQ(graph.edges()[0].to.print(), "sink.in");
+  EXPECT_EQ(graph.aovs().size(), 1u);
+  EXPECT_EQ(graph.aovs().count("other"), 1u);
+  PlanInput input;
+  input.imports = {{"host.out", Shape::buffer(4, 4)}};
+  EXPECT_EQ(input.error(graph), "");
+  input.imports.clear();
+  EXPECT_NE(input.error(graph).find("host"), std::string::npos) << "the host must give it";
+
+  const auto message = [&](const char* node, const char* import) -> std::string {
+    try {
+      graph.replaceByImports(node, import);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("sinc", "host"), "no node is named sinc; did you mean sink?");
+  EXPECT_EQ(message("sink", "scene_source"), "\"scene_source\" cannot stand for sink; use a name without dots that no node has");
+  graph.output("scene_source.out");
+  EXPECT_EQ(message("scene_source", "host"), "scene_source.out is an output of the graph; the host has it already: leave it out");
+  EXPECT_NE(graph.find("scene_source"), nullptr);
+}
+
 }  // namespace
 }  // namespace radivox::oracles
