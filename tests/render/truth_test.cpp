@@ -23,13 +23,14 @@ struct Quality {
 Quality measure(const std::string& sceneName, const oracles::Truth& truth, PipelineOptions options) {
   options.width = truth.color.width;
   options.height = truth.color.height;
-  options.outputs = {"composite.color", "direct.irradiance", "shade.irradiance"};
+  const std::string indirect = options.graph == "clustered_voxel_pixels" ? "gather_pixels.irradiance" : "shade.irradiance";
+  options.outputs = {"composite.color", "direct.irradiance", indirect};
   Pipeline p(oracles::sharedDevice(), scene::loadScene(oracles::sharedFolder() + "/scenes/" + sceneName), options);
   p.run();
   Quality q;
   q.full = oracles::compareToTruth(truth.color, p.picture("composite.color"), truth.albedo);
   q.direct = oracles::compareToTruth(truth.direct, p.picture("direct.irradiance"), truth.albedo);
-  q.indirect = oracles::compareToTruth(truth.indirect, p.picture("shade.irradiance"), truth.albedo);
+  q.indirect = oracles::compareToTruth(truth.indirect, p.picture(indirect), truth.albedo);
   std::printf("%-18s N=%-4s full %.2f dB (bias %.3f)  direct %.2f dB (%.3f)  indirect %.2f dB (%.3f), floor %.2f dB\n", sceneName.c_str(),
               options.settings.front().second.c_str(), q.full.psnr, q.full.bias, q.direct.psnr, q.direct.bias, q.indirect.psnr,
               q.indirect.bias, truth.noiseFloorIndirect);
@@ -72,6 +73,23 @@ TEST_F(Truth, SlowSponza) {
   // Some light is still lost where surfaces pass through each other, and near sunlit edges, when irradiance is interpolated over voxels.
   EXPECT_GT(q.indirect.bias, 0.94);
   EXPECT_LT(q.indirect.bias, 1.05);
+}
+
+TEST_F(Truth, SlowSponzaByPixels) {
+  if (oracles::sharedFolder().empty()) GTEST_SKIP() << "no ../shared";
+  const oracles::Truth eight = oracles::loadTruth("sponza_b8", 256.0 / 768.0);
+  double previous = 0;
+  for (const uint32_t n : {64u, 128u}) {
+    PipelineOptions options = at(n, scene::kAllBounces);
+    options.graph = "clustered_voxel_pixels";
+    const Quality q = measure("sponza.glb", eight, options);
+    EXPECT_GT(q.indirect.psnr, std::max(28.5, previous));  // error falls as N rises
+    previous = q.indirect.psnr;
+    if (n < 128) continue;
+    EXPECT_GT(q.full.psnr, 36.0);
+    EXPECT_GT(q.indirect.psnr, 33.5);
+    EXPECT_NEAR(q.indirect.bias, 0.975, 0.015);
+  }
 }
 
 }  // namespace

@@ -1,15 +1,18 @@
-// clustered_voxel.gather_pixels — indirect irradiance on screen, gathered by voxel rays from the pixels themselves.
+// clustered_voxel.gather_pixels — indirect irradiance on screen, gathered by rays from the pixels themselves.
 //
-// reads   gbuffer position, normal; the voxel structure and distance; planes, plane_extras, clearance? of visibility; face_radiosity
+// reads   gbuffer position, normal, triangle; the voxel structure and distance; planes, plane_extras, clearance? of visibility; face_radiosity;
+//         triangle_first, triangle_ids of triangles and scene geometry (near > 0); shadow_depth, shadow_triangle, face_irradiance, scene.lights,
+//         .shadow_views (shadow=on, where no surface emits)
 // writes  irradiance image RGBA32F  E_indirect at the pixel's surface, W/m²; a: sky visibility; 0 on the sky
 // runs    when the view, the voxels or the radiosity change
-// cost    pixels × rays grid walks, then one pass of 25 reads a pixel (and 25 more a `smooth` pass)
+// cost    pixels × rays grid walks, the first voxels of each against the triangles in them; one pass of 25 reads a pixel (and 25 more a `smooth` pass)
 // source  beyond the paper (METHODS section 1, "The receiver is where the error sits"): irradiance interpolated over voxels loses
 //         near-field light and shadow. Here neighbouring pixels trace different parts of one low-discrepancy set: any 4×4 block of pixels
 //         holds 16 × rays directions, and a filter over such blocks, which stops at edges of the surface, puts them together.
 //
-// Rays stop where those of visibility do (shaders/shared/voxel_cast.glsl): at the mean planes of the surface in voxels, so that the receiver's
-// own surface never shades itself, and contact shadows are finer than the voxels.
+// Up to `near` voxels rays meet triangles, and what they hit there is lit as its shadow-map texel says, not as its voxel is on average: contact
+// shadows and the rims of sunlit patches are as sharp as the geometry. Beyond, rays stop where those of visibility do (shaders/shared/voxel_cast.glsl).
+// Sponza, N = 128, indirect: near = 0 28.8 dB, 1 32.0, 2 32.1, all 31.9; with shadow 33.8; with a shift of the directions for each block 34.6.
 #pragma once
 
 #include "engine/graph/node.h"

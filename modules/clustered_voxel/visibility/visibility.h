@@ -1,6 +1,7 @@
 // clustered_voxel.visibility — what each voxel face sees: form factors by counting rays.
 //
 // reads   grid; occupancy, distance (per brick); rank; voxels, mask, first (per voxel); faces; labels (cluster of each face)
+//         triangle_first, triangle_ids, pieces? of triangles and scene geometry (triangles > 0)
 // writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first entry of each row within its chunk
 //         entries+ u32                                rows, a buffer a chunk: shared/voxel.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
@@ -13,8 +14,9 @@
 //         of scratch; 4 bytes an entry; one byte a voxel of the grid (twice while it is made)
 // source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
 //
-// Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. Rays start at x_s,
-// lifted by 0.05 h; which face stops a ray is told, with what was measured, in shaders/shared/voxel_cast.glsl. A hit nearer than
+// Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. With triangles, rays start on pieces of the
+// face's surface, drawn by area and about the piece's own normal, and test the triangles of their first voxels (shaders/shared/voxel_walk.glsl): the
+// mean point of a face often lies inside other surface. Without, they start at x_s, lifted by 0.05 h; which face stops a ray is told, with what was measured, in shaders/shared/voxel_cast.glsl. A hit nearer than
 // `near` keeps its face's id, a farther one becomes its cluster's. Misses count by direction bin, backs of one-sided surfaces as
 // kAbsorbed, so that rows always sum to M.
 //
