@@ -131,8 +131,10 @@ void addLightCases(Cases& cases) {
                      .run =
                          [scale](Bench& bench, Row& row) {
                            compareScenes(bench, row, litRoom(), scaledRoom(scale), coarse(), bench.tolerance(2e-3));
-                           row.bound = 0.02;
-                           row.why = "numbers round differently: of rays that pass just beside an edge some fall on its other side";
+                           row.bound = 0.1;
+                           row.why =
+                               "numbers round differently: planes that lie on the border of two voxels change sides, and rays that pass "
+                               "just beside an edge";
                          },
                      .fast = scale == 1e6});
   }
