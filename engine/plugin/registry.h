@@ -12,7 +12,7 @@
 #include "engine/stability/case.h"
 
 // Count up with every change of a class in engine/graph/node.h, resource.h, engine/params, engine/plugin, engine/gpu or engine/error.h.
-#define RADIVOX_ABI_VERSION 2
+#define RADIVOX_ABI_VERSION 3
 #define RADIVOX_TEXT_(x) #x
 #define RADIVOX_TEXT(x) RADIVOX_TEXT_(x)
 #if defined(_LIBCPP_VERSION)

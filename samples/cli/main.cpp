@@ -56,7 +56,8 @@ void addPlanOptions(CLI::App* command, Options& options) {
       ->type_name("N|all");
   command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
   command->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
-  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: the preset's, or 1)")->type_name("K");
+  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: the preset's, or 1)")
+      ->type_name("K");
   command->add_option("--aov", options.aovs, "what to write, linear (default: color)")->type_name("NAME[,NAME...]");
   command->add_flag("--keep-all", options.keepAll, "leave nothing out, needed or not: the same picture, at the whole cost");
   command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
@@ -233,7 +234,7 @@ int run(int argc, char** argv) {
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
   const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "stability",
-                                                  "vdb",    "graph",     "needs",   "scene",  "info"};
+                                                 "vdb",    "graph",     "needs",   "scene",  "info"};
   for (CLI::App* command : {render, reference, compare, report, stability, vdb, graph, needs, scene, info}) command->allow_extras();
 
   try {
@@ -247,9 +248,10 @@ int run(int argc, char** argv) {
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
-    throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, stability, vdb, graph, needs, scene or info, or see `radivox "
-                "--help`");
+    throw Error(
+        ErrorCode::BadInput,
+        "a command is missing; give render, reference, compare, report, stability, vdb, graph, needs, scene or info, or see `radivox "
+        "--help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
