@@ -18,10 +18,17 @@ enum class ErrorCode {
 /// `what()` is one line: what is wrong, where (file and place in it), and the mend.
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(ErrorCode code, const std::string& message) : std::runtime_error(onOneLine(message)), code_(code) {}
   ErrorCode code() const { return code_; }
 
  private:
+  /// Names out of files may hold anything, line ends and terminal codes too.
+  static std::string onOneLine(std::string text) {
+    for (char& c : text) {
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    }
+    return text;
+  }
   ErrorCode code_;
 };
 

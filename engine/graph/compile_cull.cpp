@@ -135,8 +135,12 @@ void cull(Draft& draft) {
       }
     }
   }
+  const bool keepsUnread = draft.input.traits.keeps(scene::Feature::Readers);
   for (uint32_t n = 0; n < draft.declarations.size(); ++n) {
-    if (!hasOutput(draft.declarations[n])) liveness.wantNode(n);
+    if (keepsUnread || !hasOutput(draft.declarations[n])) liveness.wantNode(n);
+    for (uint32_t p = 0; keepsUnread && draft.isLive(n) && p < draft.declarations[n].ports.size(); ++p) {
+      if (isOutput(draft.declarations[n].ports[p])) liveness.wantPort(n, p);
+    }
   }
   // Consumers first, so that a producer can print why its readers went: repeat until every reason has its root.
   std::vector<uint32_t> dead;

@@ -7,8 +7,10 @@ namespace radivox::graph {
 namespace {
 
 [[noreturn]] void tooLarge(const std::string& name, uint64_t bytes, const char* limitName, uint64_t limit) {
-  throw Error(ErrorCode::OutOfMemory, name + " needs " + std::to_string(bytes) + " B, more than this device's " + limitName + " of " +
-                                          std::to_string(limit) + " B; use a smaller resolution or scene");
+  throw Error(ErrorCode::OutOfMemory,
+              name + " needs " + std::to_string(bytes) + " B, more than this device's " + limitName + " of " + std::to_string(limit) +
+                  " B: at most " + std::to_string(static_cast<int>(100.0 * static_cast<double>(limit) / static_cast<double>(bytes))) +
+                  " % of it fits; use a smaller resolution or scene");
 }
 
 uint64_t requireExtent(const Extent& extent, const Counts& counts, const std::string& name) {

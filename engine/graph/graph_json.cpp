@@ -42,7 +42,7 @@ Json parse(std::string_view text, const std::string& source) {
     Json json = Json::parse(text, watch);
     if (!repeated.empty()) throw Error(ErrorCode::BadInput, source + ": the key " + repeated + " is there twice; remove one");
     return json;
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // parse errors, and numbers that no type holds
     // "[json.exception.parse_error.101] parse error at line 3, column 5: …"
     std::string what = error.what();
     const size_t start = what.find("] ");

@@ -32,6 +32,13 @@ struct LoadedMaker {
   std::unique_ptr<graph::Node> operator()() const { return std::make_unique<LoadedNode>(library, make()); }
 };
 
+/// Likewise a case.
+struct LoadedCase {
+  std::shared_ptr<void> library;  // first: outlives run
+  std::function<void(stability::Bench&, stability::Row&)> run;
+  void operator()(stability::Bench& bench, stability::Row& row) const { run(bench, row); }
+};
+
 }  // namespace
 
 std::string_view abiTag() { return RADIVOX_ABI_TAG; }
@@ -44,6 +51,16 @@ void Registry::add(std::string name, std::string help, std::function<std::unique
   }
   if (library_ != nullptr) make = LoadedMaker{library_, std::move(make)};
   types_.push_back({std::move(name), std::move(help), std::move(make), origin_});
+}
+
+void Registry::addStabilityCase(stability::Case stabilityCase) {
+  for (const stability::Case& known : stabilityCases_) {
+    if (known.method != stabilityCase.method || known.group != stabilityCase.group || known.name != stabilityCase.name) continue;
+    throw Error(ErrorCode::BadInput,
+                "stability case " + known.group + ": " + known.name + " is there twice (" + origin_ + "); give it another name");
+  }
+  if (library_ != nullptr) stabilityCase.run = LoadedCase{library_, std::move(stabilityCase.run)};
+  stabilityCases_.push_back(std::move(stabilityCase));
 }
 
 void Registry::load(const std::string& path) {
@@ -66,7 +83,7 @@ void Registry::load(const std::string& path) {
     throw Error(ErrorCode::BadInput, "module " + path + " was built for \"" + entry->abiTag + "\", this engine is \"" +
                                          std::string(abiTag()) + "\"; build the module again with this engine");
   }
-  const size_t before = types_.size();
+  const size_t before = types_.size(), casesBefore = stabilityCases_.size();
   origin_ = path;
   library_ = library;
   const auto leave = [&] {
@@ -77,6 +94,7 @@ void Registry::load(const std::string& path) {
     entry->registerNodes(*this);
   } catch (...) {
     types_.resize(before);
+    stabilityCases_.resize(casesBefore);
     leave();
     throw;
   }

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "engine/graph/node.h"
+#include "engine/stability/case.h"
 
 // Count up with every change of a class in engine/graph/node.h, resource.h, engine/params, engine/plugin, engine/gpu or engine/error.h.
-#define RADIVOX_ABI_VERSION 2
+#define RADIVOX_ABI_VERSION 3
 #define RADIVOX_TEXT_(x) #x
 #define RADIVOX_TEXT(x) RADIVOX_TEXT_(x)
 #if defined(_LIBCPP_VERSION)
@@ -53,8 +54,13 @@ class Registry {
   std::unique_ptr<graph::Node> make(std::string_view type) const;
   const std::vector<NodeType>& types() const { return types_; }
 
+  /// A case of `radivox stability` that the module brings. Throws BadInput when its method, group and name are taken together.
+  void addStabilityCase(stability::Case stabilityCase);
+  const std::vector<stability::Case>& stabilityCases() const { return stabilityCases_; }
+
  private:
   std::vector<NodeType> types_;
+  std::vector<stability::Case> stabilityCases_;
   std::string origin_ = "linked in";
   std::shared_ptr<void> library_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/scene/texture.h"
+#include "shaders/shared/voxel_codec.h"
 
 namespace radivox::scene {
 
@@ -25,6 +26,17 @@ gpu::Buffer makeHostBuffer(gpu::Device& device, const std::string& name, const s
   gpu::Buffer buffer(device, name, data.size() * sizeof(T), gpu::MemoryKind::Upload);
   if (!data.empty()) std::memcpy(buffer.mapped(), data.data(), data.size() * sizeof(T));
   return buffer;
+}
+
+/// Hosts make scenes too: what files are held to on import (METHODS section 0) holds for theirs, or light would bounce for ever.
+std::vector<shared::Material> clampMaterials(const std::vector<shared::Material>& materials) {
+  std::vector<shared::Material> clamped = materials;
+  for (shared::Material& material : clamped) {
+    // max first: what is not a number becomes 0.
+    material.albedo = glm::min(glm::max(glm::vec3(0.f), material.albedo), glm::vec3(shared::kMostAlbedo));
+    material.emission = glm::max(glm::vec3(0.f), material.emission);
+  }
+  return clamped;
 }
 
 /// Shaders see a buffer through one binding, whose range is limited.
@@ -93,7 +105,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const LightOptions& 
   vertices_ = makeBuffer(device, "scene.vertices", scene.vertices);
   indices_ = makeBuffer(device, "scene.indices", scene.indices);
   triangleMaterials_ = makeBuffer(device, "scene.triangle_materials", scene.triangleMaterials);
-  materials_ = makeBuffer(device, "scene.materials", scene.materials);
+  materials_ = makeBuffer(device, "scene.materials", clampMaterials(scene.materials));
   uploadTextures(scene);
   countGeometry(scene, counts_);
   setLights(scene);

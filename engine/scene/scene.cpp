@@ -66,6 +66,11 @@ Traits Scene::traits() const {
     if ((material.flags & shared::kMaterialDoubleSided) == 0u) t.singleSided = true;
   }
   t.origin = origin;
+  t.reflects = false;
+  for (const uint32_t m : triangleMaterials) {
+    if (materials[m].albedo != glm::vec3(0.f)) t.reflects = true;
+    if (t.reflects) break;
+  }
   t.sky = skyRadiance != glm::vec3(0.f);
   if (!indices.empty()) {
     t.boundsMin = t.boundsMax = vertices[indices[0]].position;

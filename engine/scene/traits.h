@@ -11,6 +11,20 @@ namespace radivox::scene {
 /// Above this share of the surface a few sample points no longer stand for what emits.
 constexpr double kMaxSampledEmissiveShare = 0.1;
 
+/// What a scene or a request may lack, so that nodes leave it out (engine/graph/left_out.h lists it with reasons and costs).
+enum class Feature : uint32_t {
+  AlphaMasks,
+  SingleSides,
+  Textures,
+  PunctualLights,
+  Emitters,
+  Bounces,  ///< indirect light: nothing bounces, or direct light alone is asked for
+  Matrix,   ///< light between clusters, beyond the first bounce
+  Readers,  ///< nodes and pictures that nobody asked for
+  Count
+};
+constexpr uint32_t kKeepAll = ~0u;
+
 struct Traits {
   uint64_t triangleCount = 0;
   uint64_t vertexCount = 0;
@@ -31,6 +45,27 @@ struct Traits {
   /// Emitters light through rays that fetch their B_e, not through samples with shadow maps: more than kMaxSampledEmissiveShare of the
   /// surface emits, or no samples are wanted (traitsFor in gpu_scene.h knows the latter).
   bool emittersByRays = false;
+
+  bool reflects = true;  ///< some material has an albedo above 0
+  /// Bits of Feature: what is kept though it is not needed (`--keep-all`). The picture is the same.
+  uint32_t kept = 0;
+
+  bool keeps(Feature feature) const { return ((kept >> static_cast<uint32_t>(feature)) & 1u) != 0; }
+  bool hasAlphaMasks() const { return alphaMasked || keeps(Feature::AlphaMasks); }
+  bool hasSingleSides() const { return singleSided || keeps(Feature::SingleSides); }
+  bool hasTextures() const { return textureCount > 0 || keeps(Feature::Textures); }
+  bool hasPunctualLights() const { return punctualLightCount() > 0 || keeps(Feature::PunctualLights); }
+  bool hasEmitters() const { return emissiveTriangleCount > 0 || keeps(Feature::Emitters); }
+  /// Emission reaches clusters by rays; where nothing emits but is kept, so does nothing.
+  bool hasEmissionByRays() const { return emittersByRays || (emissiveTriangleCount == 0 && keeps(Feature::Emitters)); }
+  /// Why no light goes from surface to surface; null where it does.
+  const char* whyNothingBounces() const {
+    if (!lit()) return "no light in the scene";
+    if (!reflects) return "every surface is black";
+    if (triangleCount > 0 && (boundsMin.x == boundsMax.x || boundsMin.y == boundsMax.y || boundsMin.z == boundsMax.z))
+      return "all surfaces lie in one plane";
+    return nullptr;
+  }
 
   uint32_t punctualLightCount() const { return directionalLightCount + pointLightCount + spotLightCount; }
   bool lit() const { return punctualLightCount() + emissiveTriangleCount > 0 || sky; }

@@ -11,6 +11,7 @@
 #include "modules/clustered_voxel/inspect/inspect.h"
 #include "modules/clustered_voxel/mark/mark.h"
 #include "modules/clustered_voxel/shade/shade.h"
+#include "modules/clustered_voxel/stability.h"
 #include "modules/clustered_voxel/visibility/transfer.h"
 #include "modules/clustered_voxel/visibility/visibility.h"
 #include "modules/clustered_voxel/voxelize/faces.h"
@@ -41,6 +42,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<GatherPixels>("indirect irradiance on screen by voxel rays from the pixels");
   registry.add<Inspect>("voxel face and cluster of each pixel, for pictures");
   registry.add<Shade>("indirect irradiance on screen from voxel faces");
+  addStabilityCases(registry);
 }
 
 }  // namespace radivox::clustered_voxel

@@ -13,8 +13,10 @@ void Composite::declare(graph::Declaration& d) {
   d.read("irradiance", "E_direct, W/m²").optional = true;
   graph::Port& indirect = d.read("indirect", "E_indirect, W/m²; a: sky visibility");
   indirect.optional = true;
-  indirect.unwanted = !d.request.wantsIndirect() && !d.traits.sky;
-  indirect.unwantedReason = "0 bounces asked for and no sky";
+  const char* nothingBounces = d.traits.whyNothingBounces();
+  indirect.unwanted =
+      !d.traits.sky && (!d.request.wantsIndirect() || nothingBounces != nullptr) && !d.traits.keeps(scene::Feature::Bounces);
+  indirect.unwantedReason = !d.request.wantsIndirect() ? "0 bounces asked for and no sky" : nothingBounces != nullptr ? nothingBounces : "";
   const Shape shape = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
   d.write("color", shape, "radiance, W/(m² sr); a: 1 surface, 0 sky");
   d.write("direct", shape, "ρ E_direct / π, with the sky's light").optional = true;

@@ -30,7 +30,7 @@ class Composite : public graph::Node {
  private:
   params::Table table_;
   gpu::Pipeline pipeline_;
-  const gpu::Image absent_;  ///< bound where the specialized shader touches nothing
+  const gpu::Image absent_{};  ///< bound where the specialized shader touches nothing
 };
 
 }  // namespace radivox::frame

@@ -25,14 +25,14 @@ Direct::Direct()
                              params::Invalidates::Plan)}) {}
 
 Direct::Emitters Direct::chooseEmitters(const scene::Traits& traits, bool hasImage) const {
-  if (traits.emissiveTriangleCount == 0) return Emitters::None;
+  if (!traits.hasEmitters()) return Emitters::None;
   if (!traits.emittersByRays) return traits.emissiveTriangleCount <= closedForm_ ? Emitters::Shadowed : Emitters::Samples;
   if (hasImage) return Emitters::Image;
   return traits.emissiveTriangleCount <= kMaxUnshadowed ? Emitters::Unshadowed : Emitters::None;
 }
 
 void Direct::declare(graph::Declaration& d) {
-  if (d.traits.punctualLightCount() + d.traits.emissiveTriangleCount == 0) {
+  if (!d.traits.hasPunctualLights() && !d.traits.hasEmitters()) {
     d.leaveOut("no lights and no emitters");
     return;
   }
@@ -75,14 +75,14 @@ void Direct::prepare(graph::PrepareContext& context) {
   constexpr auto kS = BindingType::SampledImage;
   emitters_ = chooseEmitters(context.traits(), context.has("emitted"));
   const bool shadowed = context.has("shadow_depth") && context.has("shadow_triangle");
-  pipeline_ = gpu::Pipeline(
-      context.device(), gpu::ComputePipelineInfo{.shader = "frame/direct.comp",
-                                                 .bindings = {kI, kI, kI, kB, kB, kB, kB, kB, kB, kS, kS, kI, kI, kB, kB, kB},
-                                                 .constants = {{0, filter_},
-                                                               {1, shadowed},
-                                                               {2, static_cast<uint32_t>(emitters_)},
-                                                               {3, context.traits().alphaMasked},
-                                                               {4, edges_ == Edges::Exact && context.traits().punctualLightCount() > 0}}});
+  pipeline_ = gpu::Pipeline(context.device(),
+                            gpu::ComputePipelineInfo{.shader = "frame/direct.comp",
+                                                     .bindings = {kI, kI, kI, kB, kB, kB, kB, kB, kB, kS, kS, kI, kI, kB, kB, kB},
+                                                     .constants = {{0, filter_},
+                                                                   {1, shadowed},
+                                                                   {2, static_cast<uint32_t>(emitters_)},
+                                                                   {3, context.traits().hasAlphaMasks()},
+                                                                   {4, edges_ == Edges::Exact && context.traits().hasPunctualLights()}}});
 }
 
 void Direct::record(graph::RecordContext& context) {

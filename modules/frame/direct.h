@@ -43,7 +43,7 @@ class Direct : public graph::Node {
   params::Table table_;
   Emitters emitters_ = Emitters::None;
   gpu::Pipeline pipeline_;
-  const gpu::Image absent_;  ///< bound where the specialized shader reads nothing
+  const gpu::Image absent_{};  ///< bound where the specialized shader reads nothing
 };
 
 }  // namespace radivox::frame

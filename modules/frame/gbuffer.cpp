@@ -44,7 +44,7 @@ void GBuffer::prepare(graph::PrepareContext& context) {
           .vertexShader = "frame/gbuffer.vert",
           .fragmentShader = "frame/gbuffer.frag",
           .bindings = {kB, kB, kB, kB, kB, kB},
-          .constants = {{0, traits.alphaMasked}, {1, traits.singleSided && sides_ == Sides::Gltf}, {2, traits.textureCount > 0}},
+          .constants = {{0, traits.hasAlphaMasks()}, {1, traits.hasSingleSides() && sides_ == Sides::Gltf}, {2, traits.hasTextures()}},
           .colorFormats = {kFloat4, kFloat4, kFloat4, kFloat4, VK_FORMAT_R32_UINT},
           .depthFormat = VK_FORMAT_D32_SFLOAT});
 }

@@ -21,8 +21,8 @@ ShadowMap::ShadowMap()
                              params::Invalidates::Plan)}) {}
 
 void ShadowMap::declare(graph::Declaration& d) {
-  const bool sampledEmitters = d.traits.emissiveTriangleCount > 0 && !d.traits.emittersByRays;
-  if (d.traits.punctualLightCount() == 0 && !sampledEmitters) {
+  const bool sampledEmitters = d.traits.hasEmitters() && !d.traits.emittersByRays;
+  if (!d.traits.hasPunctualLights() && !sampledEmitters) {
     d.leaveOut("no light casts shadows from a point or along a direction");
     return;
   }
@@ -41,15 +41,15 @@ void ShadowMap::declare(graph::Declaration& d) {
 
 void ShadowMap::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
-  pipeline_ = gpu::Pipeline(
-      context.device(),
-      gpu::RasterPipelineInfo{.vertexShader = "frame/shadow_map.vert",
-                              .fragmentShader = "frame/shadow_map.frag",
-                              .bindings = {kB, kB, kB, kB, kB, kB},
-                              .pushConstantBytes = sizeof(uint32_t),
-                              .constants = {{0, context.traits().alphaMasked}, {1, context.traits().singleSided && sides_ == Sides::Gltf}},
-                              .colorFormats = {VK_FORMAT_R32_UINT},
-                              .depthFormat = VK_FORMAT_D32_SFLOAT});
+  pipeline_ = gpu::Pipeline(context.device(),
+                            gpu::RasterPipelineInfo{.vertexShader = "frame/shadow_map.vert",
+                                                    .fragmentShader = "frame/shadow_map.frag",
+                                                    .bindings = {kB, kB, kB, kB, kB, kB},
+                                                    .pushConstantBytes = sizeof(uint32_t),
+                                                    .constants = {{0, context.traits().hasAlphaMasks()},
+                                                                  {1, context.traits().hasSingleSides() && sides_ == Sides::Gltf}},
+                                                    .colorFormats = {VK_FORMAT_R32_UINT},
+                                                    .depthFormat = VK_FORMAT_D32_SFLOAT});
 }
 
 void ShadowMap::record(graph::RecordContext& context) {

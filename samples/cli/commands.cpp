@@ -1,9 +1,10 @@
 // radivox graph and radivox scene: the plan without running it; a built-in scene as a file.
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "engine/error.h"
-#include "engine/graph/plan.h"
+#include "engine/graph/left_out.h"
 #include "engine/image/image.h"
 #include "engine/scene/builtin.h"
 #include "engine/scene/gltf.h"
@@ -39,14 +40,28 @@ int runGraph(const Options& options) {
   scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   const gpu::Capabilities capabilities = findCapabilities(deviceIndex);
   const scene::SceneShapes shapes = scene::describeShapes(scene, job.lights, job.request.width, job.request.height);
-  const scene::Traits traits = scene::traitsFor(scene, job.lights);
-  const graph::Plan plan = graph::compile(job.graph, {traits, job.request, capabilities, shapes.imports, shapes.counts});
+  scene::Traits traits = scene::traitsFor(scene, job.lights);
+  if (options.keepAll) traits.kept = scene::kKeepAll;
+  const graph::CompileInput input{traits, job.request, capabilities, shapes.imports, shapes.counts};
+  const std::vector<graph::LeftOut> leftOut = graph::listLeftOut(job.graph, input, shapes.counts);
+  const graph::Plan plan = graph::compile(job.graph, input);
   if (options.format == "text") {
-    std::cout << plan.printText(shapes.counts);
+    std::cout << plan.printText(shapes.counts) << graph::printLeftOut(leftOut);
   } else if (options.format == "dot") {
     std::cout << plan.printDot();
   } else {
-    std::cout << plan.printJson(shapes.counts) << "\n";
+    auto json = nlohmann::ordered_json::parse(plan.printJson(shapes.counts));
+    json["not_needed"] = nlohmann::ordered_json::array();
+    for (const graph::LeftOut& entry : leftOut) {
+      json["not_needed"].push_back({{"what", entry.what},
+                                    {"why", entry.why},
+                                    {"nodes", entry.nodes},
+                                    {"resources", entry.resources},
+                                    {"bytes", entry.bytes},
+                                    {"more", entry.open},
+                                    {"shaders", entry.shaders}});
+    }
+    std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
   }
   return 0;
 }

@@ -25,6 +25,8 @@ void catchInterrupts() {
   }
 }
 
+void ignoreFileSizeSignal() { std::signal(SIGXFSZ, SIG_IGN); }
+
 bool isInterrupted() { return interrupted != 0; }
 
 void stopIfInterrupted() {

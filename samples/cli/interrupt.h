@@ -10,6 +10,8 @@ struct Interrupted {};
 
 /// The first signal is noted; a second one ends the process at once.
 void catchInterrupts();
+/// A file that grows past the limit is an error with a name (EFBIG), not the end of the process.
+void ignoreFileSizeSignal();
 bool isInterrupted();
 /// Throws Interrupted if a signal came.
 void stopIfInterrupted();

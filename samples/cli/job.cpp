@@ -27,6 +27,8 @@ json parsePreset(const Source& preset) {
     if (parsed.is_object()) return parsed;
   } catch (const json::parse_error& e) {
     throw Error(ErrorCode::BadInput, preset.source + ": byte " + std::to_string(e.byte) + ": not JSON; mend the file");
+  } catch (const json::exception&) {
+    throw Error(ErrorCode::BadInput, preset.source + ": holds a number that is too large; mend the file");
   }
   throw Error(ErrorCode::BadInput, preset.source + ": not a JSON object; write {\"set\": {\"node.param\": value}}");
 }

@@ -12,6 +12,7 @@
 #include "samples/cli/interrupt.h"
 #include "samples/cli/options.h"
 #include "samples/report/options.h"
+#include "samples/stability/options.h"
 
 namespace radivox::cli {
 
@@ -55,8 +56,10 @@ void addPlanOptions(CLI::App* command, Options& options) {
       ->type_name("N|all");
   command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
   command->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
-  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: the preset's, or 1)")->type_name("K");
+  command->add_option("--supersample", options.supersample, "each pixel is the mean of K x K (default: the preset's, or 1)")
+      ->type_name("K");
   command->add_option("--aov", options.aovs, "what to write, linear (default: color)")->type_name("NAME[,NAME...]");
+  command->add_flag("--keep-all", options.keepAll, "leave nothing out, needed or not: the same picture, at the whole cost");
   command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
   addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
 }
@@ -130,6 +133,18 @@ void addVdbOptions(CLI::App* command, Options& options, VdbOptions& vdb) {
   command->add_option("--diff", vdb.diff, "instead: how two such files differ, grid by grid")->type_name("A B")->expected(2);
 }
 
+void addStabilityOptions(CLI::App* command, stability::SuiteOptions& suite, Options& options) {
+  command->add_option("--out", suite.out, "folder for stability.html and stability.csv")->type_name("DIR");
+  addRepeated(command, "--method", suite.methods, "only this graph; may be repeated (default: all that compute indirect light)",
+              "NAME|FILE.json");
+  command->add_option("--case", suite.match, "only cases with this in their name, as in 'stiff: furnace'")->type_name("TEXT");
+  command->add_flag("--fast", suite.fast, "only the quick cases");
+  command->add_option("--time-limit", suite.timeLimit, "begin no case after so many seconds")->type_name("S");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  command->add_flag("--validate", options.validate, "with Vulkan's validation layer; a message fails the case");
+  addRepeated(command, "--module", options.modules, "a library with more nodes and cases; may be repeated", "FILE.so");
+}
+
 /// Words that no option of the command took. CLI11's own report knows no nearest name.
 void refuseExtras(const CLI::App& command, const std::string& what) {
   const std::vector<std::string> extras = command.remaining();
@@ -161,7 +176,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("radivox ") + RADIVOX_VERSION);
   app.require_subcommand(0, 1);
   app.allow_extras();
-  app.footer("Exit codes: 0 done, 2 bad usage or input, 3 the device cannot, 4 out of memory, 130 interrupted.");
+  app.footer(
+      "Exit codes: 0 done, 2 bad usage or input, 3 the device cannot, 4 out of memory, 130 interrupted; 1 from stability: a case fails.");
 
   CLI::App* render = app.add_subcommand("render", "render a scene to .exr or .png");
   addPlanOptions(render, options);
@@ -194,9 +210,23 @@ int run(int argc, char** argv) {
   VdbOptions vdbOptions;
   CLI::App* vdb = app.add_subcommand("vdb", "write voxels, clusters and their light as OpenVDB or NanoVDB; print and compare such files");
   addVdbOptions(vdb, options, vdbOptions);
+  stability::SuiteOptions suiteOptions;
+  CLI::App* stability = app.add_subcommand("stability", "stiff and extreme cases, each against its known answer, as stability.html");
+  addStabilityOptions(stability, suiteOptions, options);
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
+  std::vector<std::string> neededScenes;
+  std::string neededRuns = "5";
+  CLI::App* needs = app.add_subcommand("needs", "time and memory saved by leaving out what these scenes do not need, as a table");
+  needs->add_option("SCENE", neededScenes, ".gltf or .glb files, or builtin:NAME[?key=value&...]")->type_name("")->take_all();
+  needs->add_option("--runs", neededRuns, "pictures whose median counts (default: 5)")->type_name("N");
+  needs->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: clustered_voxel)")
+      ->type_name("NAME|FILE.json");
+  addRepeated(needs, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
+  needs->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
+  needs->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
+  needs->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
   CLI::App* scene = app.add_subcommand("scene", "write a scene as .glb: a built-in one, or a file flattened to what is lit");
   scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...], or a .gltf/.glb file")
       ->type_name("");
@@ -206,8 +236,9 @@ int run(int argc, char** argv) {
   CLI::App* nodes = app.add_subcommand("nodes", "every node as it describes itself: ports and parameters");
   addRepeated(nodes, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
   nodes->add_option("--format", options.format, "text (default) or markdown, all of it: docs/nodes.md")->type_name("NAME");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "vdb", "graph", "scene", "info", "nodes"};
-  for (CLI::App* command : {render, reference, compare, report, vdb, graph, scene, info, nodes}) command->allow_extras();
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "stability", "vdb",
+                                                 "graph",  "needs",     "scene",   "info",   "nodes"};
+  for (CLI::App* command : {render, reference, compare, report, stability, vdb, graph, needs, scene, info, nodes}) command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -221,19 +252,24 @@ int run(int argc, char** argv) {
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
     throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, vdb, graph, scene, info or nodes, or see `radivox --help`");
+                "a command is missing; give render, reference, compare, report, stability, vdb, graph, needs, scene, info or nodes, or see "
+                "`radivox "
+                "--help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
   refuseExtras(*command, command->get_name() + " ");
 
   catchInterrupts();
+  ignoreFileSizeSignal();
   if (command == info) return runInfo(options);
   if (command == nodes) return runNodes(options);
   if (command == compare) return runCompare(options);
   if (command == vdb && (!options.scene.empty() || vdbOptions.grids == "help" || !vdbOptions.print.empty() || !vdbOptions.diff.empty())) {
     return runVdb(options, vdbOptions);
   }
+  if (command == needs && !neededScenes.empty()) return runNeeds(options, neededScenes, neededRuns);
+  if (command == stability) return stability::runStability(suiteOptions, options);
   if (command == report && !reportOptions.scenes.empty()) return report::runReport(reportOptions, options);
   if (command == scene && options.scene.empty()) {
     throw Error(ErrorCode::BadInput,

@@ -25,6 +25,7 @@ struct Options {
   std::string frames = "1";
   std::string supersample;  ///< empty: what the preset says, or 1
   bool validate = false;
+  bool keepAll = false;
   // render: settings by what they cost and how wrong they are
   std::string maxError;
   std::string budgetMs;
@@ -78,6 +79,8 @@ int runRender(const Options& options);
 int runReference(const Options& options, const ReferenceOptions& reference);
 int runVdb(const Options& options, const VdbOptions& vdb);
 int runGraph(const Options& options);
+/// A table of what leaving out saves; `options` without a scene.
+int runNeeds(const Options& options, const std::vector<std::string>& scenes, const std::string& runs);
 int runScene(const Options& options);
 int runInfo(const Options& options);
 int runNodes(const Options& options);

@@ -11,6 +11,7 @@ void visitReceivers(vec3 p, vec3 n, bool interpolate) {
   uint homeVoxel = voxelIndex(home);
   ivec3 base = ivec3(floor(p - 0.5));
   vec3 t = p - 0.5 - vec3(base);
+  ivec3 ahead = stepAhead(n);
   bool found = false;
   for (int i = 0; i < (interpolate ? 8 : 1); ++i) {
     ivec3 bits = ivec3(i & 1, (i >> 1) & 1, i >> 2);
@@ -32,7 +33,7 @@ void visitReceivers(vec3 p, vec3 n, bool interpolate) {
       // A scrap of surface says little about its voxel.
       float substance = face.area / (face.area + 0.05);
       float weight = (trilinear + 1e-4) * agree * agree * substance;
-      if (weight <= 0.0 || (interpolate && coord != home && wallBetween(home, homeVoxel, p, coord, voxel, x))) continue;
+      if (weight <= 0.0 || (interpolate && coord != home && wallBetween(home, homeVoxel, p, coord, voxel, x, ahead))) continue;
       found = true;
       RECEIVER_VISIT(s, weight, k)
     }

@@ -2,26 +2,42 @@
 #ifndef RADIVOX_CLUSTERED_VOXEL_WALLS_GLSL
 #define RADIVOX_CLUSTERED_VOXEL_WALLS_GLSL
 
-// A face of `voxel` (at `coord`) of direction f whose plane crosses the axis between a and b (grid space, along axis f >> 1).
-bool wallAt(ivec3 coord, uint voxel, uint f, float a, float b) {
+// A face of `voxel` (at `coord`) of direction f whose plane crosses the axis between a and b (grid space, along axis f >> 1). Where a wall
+// meets the surface that is lit, the voxel may hold a scrap of it only: the next voxel in front of the surface, `ahead`, tells.
+bool wallAt(ivec3 coord, uint voxel, uint f, float a, float b, ivec3 ahead) {
   uint s = faceIndex(voxel, f);
   if (s == kNone) return false;
-  Face face = faces[s];
   uint k = f >> 1;
+  if (faces[s].area < 0.3 && ahead[k] == 0) {
+    coord += ahead;
+    voxel = voxelIndex(coord);
+    s = voxel == kNone ? kNone : faceIndex(voxel, f);
+    if (s == kNone) return false;
+  }
+  Face face = faces[s];
   // A sill or a slab's edge is no wall: it must cover a good part of the voxel and look along the axis.
   if (face.area < 0.3 || abs(decodeNormal(face.normal)[k]) < 0.8) return false;
   float plane = float(coord[k]) + decodePosition(face.position)[k];
   return (plane - a) * (plane - b) < 0.0 && min(abs(plane - a), abs(plane - b)) > 0.02;
 }
 
+// One step along the normal's main axis.
+ivec3 stepAhead(vec3 n) {
+  vec3 size = abs(n);
+  uint k = size.x >= size.y && size.x >= size.z ? 0u : size.y >= size.z ? 1u : 2u;
+  ivec3 ahead = ivec3(0);
+  ahead[k] = n[k] < 0.0 ? -1 : 1;
+  return ahead;
+}
+
 // Walls that look back at `from` in either end's voxel, along each axis in which the two points differ by more than the surface's own slope.
-bool wallBetween(ivec3 fromCoord, uint fromVoxel, vec3 from, ivec3 toCoord, uint toVoxel, vec3 to) {
+bool wallBetween(ivec3 fromCoord, uint fromVoxel, vec3 from, ivec3 toCoord, uint toVoxel, vec3 to, ivec3 ahead) {
   for (uint k = 0; k < 3; ++k) {
     float step = to[k] - from[k];
     if (abs(step) < 0.05) continue;
     uint f = 2 * k + (step > 0.0 ? 1u : 0u);
-    if (fromVoxel != kNone && wallAt(fromCoord, fromVoxel, f, from[k], to[k])) return true;
-    if (wallAt(toCoord, toVoxel, f, from[k], to[k])) return true;
+    if (fromVoxel != kNone && wallAt(fromCoord, fromVoxel, f, from[k], to[k], ahead)) return true;
+    if (wallAt(toCoord, toVoxel, f, from[k], to[k], ahead)) return true;
   }
   return false;
 }

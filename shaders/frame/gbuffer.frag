@@ -38,6 +38,29 @@ void cameraRay(out vec3 origin, out vec3 d) {
   }
 }
 
+// The triangle's point nearest to b1 e1 + b2 e2. Clamping b1 and b2 would do for a stout triangle; in a needle a hair across is many
+// lengths along, and the point would land at its other end.
+void nearestInside(vec3 e1, vec3 e2, inout float b1, inout float b2) {
+  vec3 p = b1 * e1 + b2 * e2;
+  float least = 3.4e38;
+  vec2 best = vec2(0.0);
+  const vec2 corners[4] = vec2[](vec2(0.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(0.0));
+  for (uint k = 0u; k < 3u; ++k) {
+    vec2 from = corners[k], along = corners[k + 1u] - corners[k];
+    vec3 a = from.x * e1 + from.y * e2, edge = along.x * e1 + along.y * e2;
+    float length2 = dot(edge, edge);
+    float t = length2 > 0.0 ? clamp(dot(p - a, edge) / length2, 0.0, 1.0) : 0.0;
+    vec3 miss = p - a - t * edge;
+    float distance2 = dot(miss, miss);
+    if (distance2 < least) {
+      least = distance2;
+      best = from + t * along;
+    }
+  }
+  b1 = best.x;
+  b2 = best.y;
+}
+
 void main() {
   uint i0 = indices[3u * triangle], i1 = indices[3u * triangle + 1u], i2 = indices[3u * triangle + 2u];
   vec3 p0 = vertices[i0].position;
@@ -77,8 +100,7 @@ void main() {
   }
 
   // The rasterizer's snapping may put the centre a hair outside the triangle.
-  b1 = clamp(b1, 0.0, 1.0);
-  b2 = clamp(b2, 0.0, 1.0 - b1);
+  if (min(b1, b2) < 0.0 || b1 + b2 > 1.0) nearestInside(e1, e2, b1, b2);
   vec3 position = p0 + b1 * e1 + b2 * e2;
   // Front is where the corners go counter-clockwise; vertex normals only bend the surface's own side.
   vec3 geometric = cross(e1, e2);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,6 +53,10 @@ CommandResult runRadivox(const std::vector<std::string>& arguments, const Comman
     ::dup2(err.write, STDERR_FILENO);
     for (const auto& [name, value] : setup.environment) ::setenv(name.c_str(), value.c_str(), 1);
     if (!setup.folder.empty() && ::chdir(setup.folder.c_str()) != 0) ::_exit(125);
+    if (setup.largestFile > 0) {
+      const rlimit limit{setup.largestFile, setup.largestFile};
+      if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(124);
+    }
     ::execv(binary.c_str(), argv.data());
     ::_exit(126);
   }

@@ -21,6 +21,7 @@ struct CommandSetup {
   std::filesystem::path folder;                    ///< to run in; empty: ours
   int signalAfterMs = 0;                           ///< when to send `signal`; 0: never
   int signal = 0;
+  uint64_t largestFile = 0;    ///< bytes: writing more fails, as on a full disk; 0: no limit
   int timeLimitSeconds = 120;  ///< the process is ended then
 };
 

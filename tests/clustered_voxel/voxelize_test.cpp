@@ -375,7 +375,7 @@ TEST_F(VoxelizeTest, AlphaMaskTakesItsShareOfArea) {
     EXPECT_GT(reference.grid.origin.x + reference.grid.h * reference.facePosition(i).x, 0.499f);
     area += 0.5 * face.area * reference.grid.h * reference.grid.h;
     const glm::vec3 albedo = shared::decodeAlbedo(face.albedo);
-    EXPECT_NEAR(albedo.x, 1.f, 1e-4f);
+    EXPECT_NEAR(albedo.x, 0.999f, 1e-4f) << "as bright as surfaces may be";
     EXPECT_NEAR(albedo.y, 0.2158f, 1e-3f) << "sRGB 128, linear";
   }
   EXPECT_NEAR(area, 0.5, 0.01);

@@ -174,7 +174,7 @@ TEST_F(GBufferTest, TexturesColourAndMask) {
   SceneBuilder b;
   b.scene.textures.push_back(makeBoard());
   shared::Material& material = b.scene.materials.front();
-  material.albedo = {0.8f, 0.4f, 1.f};
+  material.albedo = {0.8f, 0.4f, 0.9f};
   material.baseTexture = 0;
   material.emission = glm::vec3(2.f);
   material.emissiveTexture = 0;
@@ -190,7 +190,7 @@ TEST_F(GBufferTest, TexturesColourAndMask) {
         const bool white = (x / 8 + y / 8) % 2 == 0;
         const float red = static_cast<float>(16 * field) / 255.f;
         const bool there = white || !masked;
-        const glm::vec4 expected = there ? glm::vec4(0.8f * red, 0.4f, 0.2f, 1.f) : glm::vec4(0.f);
+        const glm::vec4 expected = there ? glm::vec4(0.8f * red, 0.4f, 0.18f, 1.f) : glm::vec4(0.f);
         EXPECT_LT(glm::length(albedo[y * 32 + x] - expected), 1e-5f) << x << ", " << y;
         const glm::vec3 glow = there ? glm::vec3(2.f * red, 2.f, 0.4f) : glm::vec3(0.f);
         EXPECT_LT(glm::length(glm::vec3(emission[y * 32 + x]) - glow), 1e-5f) << x << ", " << y;

@@ -139,14 +139,14 @@ TEST_F(ExecutorMemoryTest, BuffersBeyondTheDeviceNamePortSizeAndLimit) {
   };
   const gpu::Capabilities& limits = device().capabilities();
   const uint64_t words = limits.maxBufferSize / 4 + 1;
-  EXPECT_EQ(errorFor(words, graph::UseTransfer), "node.out needs " + std::to_string(words * 4) +
-                                                     " B, more than this device's largest buffer of " +
-                                                     std::to_string(limits.maxBufferSize) + " B; use a smaller resolution or scene");
+  EXPECT_EQ(errorFor(words, graph::UseTransfer),
+            "node.out needs " + std::to_string(words * 4) + " B, more than this device's largest buffer of " +
+                std::to_string(limits.maxBufferSize) + " B: at most 99 % of it fits; use a smaller resolution or scene");
   if (limits.maxStorageBufferRange < limits.maxBufferSize) {
     const uint64_t bindable = limits.maxStorageBufferRange / 4 + 1;
     EXPECT_EQ(errorFor(bindable, graph::UseCompute),
               "node.out needs " + std::to_string(bindable * 4) + " B, more than this device's largest storage buffer binding of " +
-                  std::to_string(limits.maxStorageBufferRange) + " B; use a smaller resolution or scene");
+                  std::to_string(limits.maxStorageBufferRange) + " B: at most 99 % of it fits; use a smaller resolution or scene");
   }
   EXPECT_NE(errorFor(uint64_t{1} << 63, graph::UseTransfer).find("does not fit in 64 bits"), std::string::npos);
 }

@@ -31,6 +31,7 @@ Pipeline::Pipeline(gpu::Device& device, scene::Scene scene_, const PipelineOptio
   for (const std::string& output : options.outputs) graph->output(output);
 
   traits_ = scene::traitsFor(scene, options.lights);
+  traits_.kept = options.kept;
   request_.width = options.width;
   request_.height = options.height;
   request_.bounces = options.bounces;

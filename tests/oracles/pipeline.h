@@ -21,6 +21,7 @@ struct PipelineOptions {
   uint32_t bounces = scene::kAllBounces;
   std::set<std::string> aovs{"color"};  ///< of the request: some nodes look at it
   scene::LightOptions lights;
+  uint32_t kept = 0;  ///< of scene::Traits: what is computed though it is not needed
 };
 
 class Pipeline {

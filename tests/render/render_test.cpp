@@ -211,7 +211,7 @@ TEST_F(Render, FurnaceIsExactAtEveryFace) {
     const auto voxels = p.buffer<uint32_t>("index.voxels", p.count("voxels"));
     const auto irradiance = p.buffer<glm::vec4>("gather.irradiance");
     // ρ as the faces hold it, in 16 bits.
-    const double kept = std::round(albedo * 65535.0) / 65535.0;
+    const double kept = static_cast<double>(shared::decodeAlbedoChannel(shared::encodeAlbedoChannel(static_cast<float>(albedo))));
     const double expected = kept * (1.0 - albedo) / (1.0 - kept);
     const glm::vec3 middle = glm::vec3(grid.size) * 0.5f;
     size_t inside = 0, wrong = 0;

@@ -21,6 +21,11 @@ constexpr uint32_t kGroup = 64;
 constexpr uint32_t kRowsPerGroup = 8;
 constexpr VkDeviceSize kStatusBytes = 16;
 
+/// One where none is asked for but they are kept: the picture leaves it out.
+uint32_t bouncesOf(const scene::Request& request, const scene::Traits& traits) {
+  return request.bounces == 0 && traits.keeps(scene::Feature::Bounces) ? 1 : request.bounces;
+}
+
 gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount,
                            std::vector<gpu::SpecializationConstant> constants = {}) {
   return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
@@ -40,7 +45,7 @@ Bounce::Bounce()
               params::number("iterations", &iterations_, {1, 20000}, "most iterations", params::Invalidates::Rerun)}) {}
 
 void Bounce::declare(graph::Declaration& d) {
-  const uint32_t bounces = d.request.bounces;
+  const uint32_t bounces = bouncesOf(d.request, d.traits);
   if (bounces == 0) {
     d.leaveOut("direct light only");
     return;
@@ -49,7 +54,8 @@ void Bounce::declare(graph::Declaration& d) {
     throw Error(ErrorCode::BadInput, "bounces=" + std::to_string(bounces) + ": bounce.iterations=" + std::to_string(iterations_) +
                                          " allows at most " + std::to_string(iterations_ + 1) +
                                          "; ask for all bounces, or raise bounce.iterations");
-  const bool needsMatrix = bounces > 1 || d.traits.emittersByRays;
+  const bool emits = d.traits.hasEmissionByRays();
+  const bool needsMatrix = bounces > 1 || emits || d.traits.keeps(scene::Feature::Matrix);
   for (const char* name : {"row_start", "entries", "sky"}) {
     graph::Port& port = d.read(name, "form factors between clusters");
     port.optional = port.unwanted = !needsMatrix;
@@ -60,7 +66,7 @@ void Bounce::declare(graph::Declaration& d) {
   d.read("labels", "cluster id of each face");
   d.read("faces", "Face");
   graph::Port& emission = d.read("emission", "mean B_e of each face, W/m²");
-  emission.optional = emission.unwanted = !d.traits.emittersByRays;
+  emission.optional = emission.unwanted = !emits;
   emission.unwantedReason = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
   graph::Port& weights = d.read("weights", "how much of each face others see, for the mean of emission");
   weights.optional = true;
@@ -80,7 +86,7 @@ void Bounce::declare(graph::Declaration& d) {
     d.scratch("iterate", Shape::buffer(24, Extent::of("clusters")), "B before and after a step");
     d.scratch("steps", Shape::buffer(12, Extent::of("clusters")), "last change of B");
   }
-  if (d.traits.emittersByRays) {
+  if (emits) {
     d.scratch("mean_emission", Shape::buffer(12, Extent::of("clusters")), "B_e of clusters");
     d.scratch("received", Shape::buffer(12, Extent::of("clusters")), "E_emit = F B_e");
   }
@@ -127,7 +133,7 @@ void Bounce::record(graph::RecordContext& context) {
   }
   const bool hasMatrix = context.has("entries");
   const bool hasEmission = context.has("emission");
-  const uint32_t bounces = context.request().bounces;
+  const uint32_t bounces = bouncesOf(context.request(), context.traits());
   const bool counted = bounces != scene::kAllBounces;
   BouncePush push{};
   push.matrix = glm::uvec2(0);

@@ -14,7 +14,8 @@
 // is out of float's reach (ρ near 1), 2⁻²² max B; the error is at most the residual / (1 − r), r the spectral radius of ρF. The solver
 // starts below every solution, at −max B⁰: then its first residual is positive, eight plain steps keep it so, and the greatest ratio of two
 // successive residuals bounds r from above (Collatz, Wielandt), much closer than max ρ does. Chebyshev iteration for eigenvalues in [−r, r]
-// takes it from there, in about ln(1/residual) / √(2(1 − r)) steps; if its residual does not fall over 16 steps, plain steps follow, which
+// takes it from there, in about ln(1/residual) / √(2(1 − r)) steps, and where a lit cluster's own residual is then above 10⁻³ of itself (it
+// lies beside a far brighter light) plain steps go on until it is not; if its residual does not fall over 16 steps, plain steps follow, which
 // contract in every case since rows of F sum to at most 1 and ρ < 1.
 #pragma once
 

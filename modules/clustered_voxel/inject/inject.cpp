@@ -18,7 +18,7 @@ Inject::Inject()
                              params::Invalidates::Plan)}) {}
 
 void Inject::declare(graph::Declaration& d) {
-  lit_ = d.traits.punctualLightCount() + d.traits.emissiveTriangleCount > 0;
+  lit_ = d.traits.hasPunctualLights() || d.traits.hasEmitters();
   for (const char* name : {"scene.info", "scene.lights", "scene.shadow_views", "scene.vertices", "scene.indices",
                            "scene.triangle_materials", "scene.materials"})
     d.read(name, "lights and geometry");

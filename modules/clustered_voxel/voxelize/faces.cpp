@@ -9,7 +9,7 @@ using graph::Extent;
 using graph::Shape;
 
 std::vector<gpu::SpecializationConstant> materialConstants(const scene::Traits& traits) {
-  return {{0, traits.textureCount > 0 ? 1u : 0u}, {1, traits.alphaMasked ? 1u : 0u}, {2, traits.emissiveTriangleCount > 0 ? 1u : 0u}};
+  return {{0, traits.hasTextures() ? 1u : 0u}, {1, traits.hasAlphaMasks() ? 1u : 0u}, {2, traits.hasEmitters() ? 1u : 0u}};
 }
 
 Faces::Faces() : table_({TrianglePass::methodParam(&method_)}) {}

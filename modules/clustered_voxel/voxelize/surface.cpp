@@ -26,7 +26,7 @@ Surface::Surface()
               TrianglePass::methodParam(&method_)}) {}
 
 void Surface::declare(graph::Declaration& d) {
-  emissive_ = d.traits.emissiveTriangleCount > 0;
+  emissive_ = d.traits.hasEmitters();
   const uint32_t use = TrianglePass::useOf(method_);
   TrianglePass::declare(d, method_);
   d.read("scene.triangle_materials", "one a triangle", use);

@@ -19,6 +19,8 @@ RADIVOX_CONST uint kPhaseChebyshev = 1u;
 RADIVOX_CONST uint kPhasePlain = 2u;      // plain steps to the end: asked for, or fallen back to
 RADIVOX_CONST uint kPhaseCounted = 3u;    // as many plain steps as were recorded
 
+RADIVOX_CONST uint kPhaseFinish = 4u;     // plain steps for what a far brighter light elsewhere drowned
+
 RADIVOX_CONST uint kStopNone = 0u;        // iterationLimit came first (or a counted run)
 RADIVOX_CONST uint kStopResidual = 1u;    // as small as asked for
 RADIVOX_CONST uint kStopRounding = 2u;    // as small as float arithmetic lets it become
@@ -39,6 +41,8 @@ struct BounceControl {
   uvec3 sweepResidual;
   uvec3 sweepRatio;
   uvec3 sweepSize;
+  uint sweepStray;      // |r| / x of lit clusters (b > 0), the largest; infinity where x is not above 0
+  uint strayIterations; // sweeps of kPhaseFinish
   uvec3 source;         // max b
   uvec3 radius;         // upper bound of the spectral radius of ρF
   vec3 omega;

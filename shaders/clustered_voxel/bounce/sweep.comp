@@ -16,10 +16,15 @@ const uint kWindowSweeps = 16u;
 // Where rounding of x itself, 2⁻²⁴ of it, and of the terms of r keeps r from falling.
 const float kRoundingFloor = 2.384185791015625e-7;  // 2⁻²²
 const uint kInfinity = 0x7f800000u;
+// The residual is measured against the brightest source. A lamp that is 10¹⁵ times dimmer, in a room of its own, would be lost in it: what is
+// lit must also be right to this part of itself, and plain steps from b or above, which only ever add light, see to that.
+const float kMostStray = 1e-3;
+const uint kMostFinishSweeps = 256u;
 
 shared uint groupResidual[3];
 shared uint groupRatio[3];
 shared uint groupSize[3];
+shared uint groupStray;
 
 // One lane, after all groups of the sweep.
 void decide() {
@@ -42,14 +47,23 @@ void decide() {
     control.sweepRatio[k] = 0u;
     control.sweepSize[k] = 0u;
   }
+  float stray = uintBitsToFloat(control.sweepStray);
+  control.sweepStray = 0u;
   control.residual = relative;
   control.iterations += 1u;
   control.groupsDone = 0u;
   if (control.phase == kPhaseCounted) return;
 
-  if (measure <= 1.0) {
+  if (control.phase == kPhaseFinish) {
+    control.strayIterations += 1u;
+    if (stray <= kMostStray || control.strayIterations >= kMostFinishSweeps || control.iterations >= push.iterationLimit)
+      control.groups = uvec3(0u);
+  } else if (measure <= 1.0) {
     control.stopReason = kStopResidual;
-    control.groups = uvec3(0u);
+    if (stray <= kMostStray || control.iterations >= push.iterationLimit)
+      control.groups = uvec3(0u);
+    else
+      control.phase = kPhaseFinish;
   } else if (control.iterations >= push.iterationLimit) {
     control.groups = uvec3(0u);
   } else if (control.phase == kPhaseWarmUp) {
@@ -88,14 +102,17 @@ void decide() {
 void main() {
   uint lane = gl_LocalInvocationID.x;
   if (lane < 3u) groupResidual[lane] = groupRatio[lane] = groupSize[lane] = 0u;
+  if (lane == 0u) groupStray = 0u;
   uint readFrom = (control.iterations & 1u) * push.clusterCount;
   uint writeTo = push.clusterCount - readFrom;
   bool isChebyshev = control.phase == kPhaseChebyshev;
   bool isWarmUp = control.phase == kPhaseWarmUp;
   vec3 omega = control.omega;
+  // The solution is nowhere below 0, and iterates are, by what is small beside the brightest.
+  vec3 least = vec3(control.phase == kPhaseFinish ? 0.0 : uintBitsToFloat(0xff800000u));
   uint c = rowOfLane();
   vec3 received;
-#define RADIVOX_VECTOR(i) iterate[readFrom + (i)]
+#define RADIVOX_VECTOR(i) max(iterate[readFrom + (i)], least)
   radivoxRowProduct(c, received);
   if (isFirstOfRow() && c < push.clusterCount) {
     vec3 reflected = clusters[c].albedo * received;
@@ -106,10 +123,11 @@ void main() {
     vec3 next = isChebyshev ? omega * residual + (omega - 1.0) * step : residual;
     iterate[writeTo + c] = isChebyshev ? x + next : b + reflected;
     steps[c] = next;
-    indirect[c] = received;
+    indirect[c] = max(received, vec3(0.0));
     for (uint k = 0; k < 3u; ++k) {
       atomicMax(groupResidual[k], floatBitsToUint(abs(residual[k])));
       atomicMax(groupSize[k], floatBitsToUint(abs(x[k])));
+      if (b[k] > 0.0) atomicMax(groupStray, x[k] > 0.0 ? floatBitsToUint(abs(residual[k]) / x[k]) : kInfinity);
       if (isWarmUp && residual[k] > 0.0)
         atomicMax(groupRatio[k], step[k] > 0.0 ? floatBitsToUint(residual[k] / step[k]) : kInfinity);
     }
@@ -120,6 +138,7 @@ void main() {
     atomicMax(control.sweepRatio[lane], groupRatio[lane]);
     atomicMax(control.sweepSize[lane], groupSize[lane]);
   }
+  if (lane == 0u) atomicMax(control.sweepStray, groupStray);
   memoryBarrierBuffer();
   barrier();
   if (lane == 0u) {

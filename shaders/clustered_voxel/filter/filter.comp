@@ -24,14 +24,14 @@ layout(push_constant, scalar) uniform Push {
 bool isNeeded(uint s) { return (needed[s >> 5] & (1u << (s & 31u))) != 0u; }
 
 // No wall on the way: the last voxel before the far one is asked too, so that reaches of two or more voxels do not jump a wall.
-bool blocked(ivec3 a, uint av, vec3 x, ivec3 b, uint bv, vec3 y) {
-  if (wallBetween(a, av, x, b, bv, y)) return true;
+bool blocked(ivec3 a, uint av, vec3 x, ivec3 b, uint bv, vec3 y, ivec3 ahead) {
+  if (wallBetween(a, av, x, b, bv, y, ahead)) return true;
   ivec3 delta = b - a;
   int steps = max(abs(delta.x), max(abs(delta.y), abs(delta.z)));
   for (int i = 1; i < steps; ++i) {
     ivec3 c = ivec3(floor(mix(x, y, float(i) / float(steps))));
     uint cv = voxelIndex(c);
-    if (cv != kNone && wallBetween(c, cv, x, c, cv, y)) return true;
+    if (cv != kNone && wallBetween(c, cv, x, c, cv, y, ahead)) return true;
   }
   return false;
 }
@@ -53,6 +53,7 @@ void main() {
   ivec3 coord = ivec3(unpackVoxel(voxels[key >> 3]));
   vec3 x = vec3(coord) + decodePosition(faces[s].position);
   vec3 n = decodeNormal(faces[s].normal);
+  ivec3 ahead = stepAhead(n);
   int r = int(radius);
   float sigma = 0.5 * float(r) + 0.25;
   vec4 sum = vec4(0.0);
@@ -75,7 +76,7 @@ void main() {
           vec3 m = decodeNormal(faces[t].normal);
           float offPlane = max(abs(dot(y - x, n)), abs(dot(y - x, m)));
           weight *= max(0.0, dot(n, m) * 4.0 - 3.0) * max(0.0, 1.0 - offPlane * offPlane) * min(1.0, faces[t].area);
-          if (weight <= 0.0 || blocked(coord, key >> 3, x, there, voxel, y)) continue;
+          if (weight <= 0.0 || blocked(coord, key >> 3, x, there, voxel, y, ahead)) continue;
         } else {
           weight *= min(1.0, faces[s].area) + 1e-3;
         }
