@@ -12,6 +12,7 @@
 #include "samples/cli/interrupt.h"
 #include "samples/cli/options.h"
 #include "samples/report/options.h"
+#include "samples/viewer/view_command.h"
 
 namespace radivox::cli {
 
@@ -107,6 +108,36 @@ void addReportOptions(CLI::App* report, report::ReportOptions& reportOptions, Op
   addRepeated(report, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
 }
 
+void addViewOptions(CLI::App* command, Options& options, viewer::ViewOptions& view) {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...] (default: builtin:atrium)")
+      ->type_name("");
+  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
+      ->type_name("NAME|FILE.json");
+  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
+  addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
+  command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) the converged solution")
+      ->type_name("N|all");
+  command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
+  command->add_option("--overlay", view.overlay, "picture (default), voxels, clusters, ... or an AOV of the graph")->type_name("NAME");
+  command->add_flag("--blocks", view.blocks, "overlays on the voxels themselves");
+  command->add_option("--point", view.point, "the pixel that the mouse points at, for --overlay visible_clusters")->type_name("X,Y");
+  command->add_option("--reference", view.reference, "stored picture, for --overlay error")->type_name("FILE.exr");
+  command->add_flag("--truth", view.truth, "path-traced truth beside the picture");
+  command->add_option("--views", view.views, "camera bookmarks, paths and lights; kept there, too (default: radivox_views.json)")
+      ->type_name("FILE.json");
+  command->add_option("--play", view.play, "begin with this path of --views")->type_name("NAME");
+  command->add_option("--size", options.size, "pixels of the window, or of the picture without one (default: 1280x720)")->type_name("WxH");
+  command->add_flag("--headless", view.headless, "no window: write pictures");
+  addRepeated(command, "--out", options.outputs, "headless: picture to write, frame_####.png for every frame; may be repeated",
+              "FILE.exr|.png");
+  command->add_option("--frames", options.frames, "headless: how many frames, 30 a second (default: 1)")->type_name("N");
+  command->add_flag("--panels", view.panels, "headless: the window's panels around the picture");
+  command->add_option("--stats", options.stats, "times to write when it ends")->type_name("FILE.json");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+  command->add_flag("--validate", options.validate, "with Vulkan's validation layer; its messages are errors");
+}
+
 /// Words that no option of the command took. CLI11's own report knows no nearest name.
 void refuseExtras(const CLI::App& command, const std::string& what) {
   const std::vector<std::string> extras = command.remaining();
@@ -168,6 +199,9 @@ int run(int argc, char** argv) {
   report::ReportOptions reportOptions;
   CLI::App* report = app.add_subcommand("report", "error against run time: every method and preset on these scenes, as report.html");
   addReportOptions(report, reportOptions, options);
+  viewer::ViewOptions viewOptions;
+  CLI::App* view = app.add_subcommand("view", "walk through a scene in a window, and look inside its light");
+  addViewOptions(view, options, viewOptions);
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
@@ -177,8 +211,8 @@ int run(int argc, char** argv) {
   addRepeated(scene, "--out", options.outputs, "file to write", "FILE.glb");
   CLI::App* info = app.add_subcommand("info", "devices, node types and their parameters, scenes, graphs, presets");
   addRepeated(info, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "graph", "scene", "info"};
-  for (CLI::App* command : {render, reference, compare, report, graph, scene, info}) command->allow_extras();
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "view", "graph", "scene", "info"};
+  for (CLI::App* command : {render, reference, compare, report, view, graph, scene, info}) command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -192,7 +226,7 @@ int run(int argc, char** argv) {
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
     throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, graph, scene or info, or see `radivox --help`");
+                "a command is missing; give render, reference, compare, report, view, graph, scene or info, or see `radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -205,6 +239,10 @@ int run(int argc, char** argv) {
   if (command == scene && options.scene.empty()) {
     throw Error(ErrorCode::BadInput,
                 "NAME is missing; give a built-in scene of `radivox info`, as in `radivox scene cornell --out cornell.glb`");
+  }
+  if (command == view) {
+    if (view->count("--size") == 0) options.size = "1280x720";
+    return viewer::runView(viewOptions, options);
   }
   requireScene(options, command->get_name());
   if (command == scene) return runScene(options);
