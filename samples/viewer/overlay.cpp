@@ -1,10 +1,10 @@
 #include "samples/viewer/overlay.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <numbers>
 
-#include "engine/gpu/staging.h"
 #include "shaders/viewer/overlay.h"
 
 namespace radivox::viewer {

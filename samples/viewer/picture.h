@@ -41,7 +41,7 @@ struct PointedFace {
     uint32_t hit = ~0u;      ///< face; ~0: none
     uint32_t cluster = ~0u;  ///< of that face
   };
-  std::vector<Ray> rays;  ///< empty where the graph traces rays in another way
+  std::vector<Ray> rays;  ///< those counted; where the graph traces them in a way of its own, one to the middle of each cluster
 };
 
 /// What ran, for the graph panel.

@@ -58,8 +58,30 @@ PointedFace FaceProbe::read(const Ports& ports, uint32_t face) {
   if (valid != nullptr && indirect != nullptr && (readOne<uint32_t>(device_, *valid, face / 32) >> face % 32 & 1u) != 0)
     pointed.indirect = glm::vec3(readOne<glm::vec4>(device_, *indirect, face));
   readRow(ports, pointed);
-  if (paramOf(ports, "traversal") == "dda") traceRays(ports, pointed);
+  if (isRetraceable(ports)) {
+    traceRays(ports, pointed);
+  } else {
+    pointToClusters(ports, pointed);
+  }
   return pointed;
+}
+
+/// viewer/rays.comp walks voxels as visibility's default does; the paper's lines and rays that meet triangles it does not know.
+bool FaceProbe::isRetraceable(const Ports& ports) {
+  const std::string triangles = paramOf(ports, "triangles");
+  const bool meetsTriangles = !triangles.empty() && std::stod(triangles) > 0 && !ports.grown("clustered_voxel.triangles", "ids").empty();
+  return paramOf(ports, "traversal") == "dda" && !meetsTriangles;
+}
+
+void FaceProbe::pointToClusters(const Ports& ports, PointedFace& pointed) {
+  const std::vector<shared::Cluster> clusters =
+      gpu::downloadAs<shared::Cluster>(device_, *ports.buffer("clustered_voxel.members", "clusters"), ports.count("clusters"));
+  for (const auto& [cluster, rays] : pointed.clusters) {
+    PointedFace::Ray ray;
+    ray.end = toWorld(grid_, clusters.at(cluster).position);
+    ray.cluster = cluster;
+    pointed.rays.push_back(ray);
+  }
 }
 
 void FaceProbe::readRow(const Ports& ports, PointedFace& pointed) {

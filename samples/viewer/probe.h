@@ -16,7 +16,9 @@ class FaceProbe {
 
  private:
   void readRow(const Ports& ports, PointedFace& pointed);
+  static bool isRetraceable(const Ports& ports);
   void traceRays(const Ports& ports, PointedFace& pointed);
+  void pointToClusters(const Ports& ports, PointedFace& pointed);
   gpu::Device& device_;
   gpu::DescriptorPool pool_;
   gpu::Pipeline pipeline_;

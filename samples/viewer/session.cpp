@@ -1,6 +1,7 @@
 #include "samples/viewer/session.h"
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "engine/error.h"
@@ -18,6 +19,9 @@ double millisecondsSince(Clock::time_point start) { return std::chrono::duration
 
 /// A full picture that takes longer than this while the camera moves is replaced by the preview.
 constexpr double kSlowMs = 120;
+
+/// Previews have no more pixels than this.
+constexpr double kPreviewPixels = 200000;
 
 /// Cameras, sizes or overlays differ: worth a preview while the light is at work.
 bool looksDifferent(const View& a, const View& b) {
@@ -54,15 +58,24 @@ void Session::loadScene(const View& view, const Hooks& hooks) {
   if (hooks.sceneLoaded) hooks.sceneLoaded(loaded_);
 }
 
-View Session::withLighting(View view) const {
-  if (!view.lighting && view.scene == sceneName_) view.lighting = Lighting{loaded_->lights, loaded_->skyRadiance};
+View Session::resolve(View view) const {
+  if (view.scene != sceneName_) return view;
+  if (!view.lighting) view.lighting = Lighting{loaded_->lights, loaded_->skyRadiance};
+  if (view.namedCamera) {
+    view.camera = loaded_->cameras.front();
+    for (size_t i = 0; i < loaded_->cameras.size(); ++i) {
+      const scene::CameraDescription& camera = loaded_->cameras[i];
+      if (camera.name == *view.namedCamera || std::to_string(i) == *view.namedCamera) view.camera = camera;
+    }
+    view.namedCamera.reset();
+  }
   return view;
 }
 
 bool Session::show(const View& wanted, const Hooks& hooks) {
   if (wanted.frozen && showFrozen(wanted, hooks)) return true;
   loadScene(wanted, hooks);
-  const View view = withLighting(wanted);
+  const View view = resolve(wanted);
   lit_.lights = view.lighting->lights;
   lit_.skyRadiance = view.lighting->sky;
   return prepareFull(view, hooks) && runFull(view, hooks);
@@ -90,10 +103,16 @@ bool Session::showFrozen(const View& view, const Hooks& hooks) {
 
 void Session::showPreview(const View& view, const Hooks& hooks) {
   const auto start = Clock::now();
-  if (preview_ && !preview_->update(lit_, view)) preview_.reset();
-  if (!preview_) preview_ = std::make_unique<Method>(*device_, lit_, view, options_.modules, Method::Quality::Preview);
+  View small = view;
+  const auto divisor = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(view.width) * view.height / kPreviewPixels)));
+  small.width = std::max(view.width / divisor, 1u);
+  small.height = std::max(view.height / divisor, 1u);
+  if (view.pointer) small.pointer = glm::min(*view.pointer / divisor, glm::uvec2(small.width - 1, small.height - 1));
+  if (preview_ && !preview_->update(lit_, small)) preview_.reset();
+  if (!preview_) preview_ = std::make_unique<Method>(*device_, lit_, small, options_.modules, Method::Quality::Preview);
   preview_->run({}, hooks.stop);
-  shown_ = finish(*preview_, view, true, millisecondsSince(start));
+  shown_ = finish(*preview_, small, true, millisecondsSince(start));
+  shown_.view = view;
   publish(shown_, hooks);
 }
 
@@ -120,7 +139,7 @@ bool Session::runFull(const View& view, const Hooks& hooks) {
   const auto interrupted = [&] {
     if (givenUp || (hooks.stop && hooks.stop())) return givenUp = true;
     if (!hooks.newest || !options_.previews) return false;
-    const View newest = withLighting(hooks.newest());
+    const View newest = resolve(hooks.newest());
     if (!wantsSameLight(newest, view)) return givenUp = true;
     // One camera frame: soon done, and then the newest view's turn comes.
     if (full_->isLit()) return false;

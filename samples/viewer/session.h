@@ -53,7 +53,7 @@ class Session {
 
  private:
   void loadScene(const View& view, const Hooks& hooks);
-  View withLighting(View view) const;  ///< the scene's own where it names none
+  View resolve(View view) const;  ///< with the scene's own lights and camera where it names no other
   bool showFrozen(const View& view, const Hooks& hooks);
   void showPreview(const View& view, const Hooks& hooks);
   bool prepareFull(const View& view, const Hooks& hooks);

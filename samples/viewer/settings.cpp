@@ -15,7 +15,7 @@ void Settings::load(const cli::Options& options) {
   preset_ = options.presets.empty() ? "" : options.presets.back();
 }
 
-std::vector<Settings::Group> Settings::groups() {
+std::vector<Settings::Group> Settings::groups() const {
   std::vector<Group> groups;
   for (const graph::Graph::Entry& entry : job_->graph.nodes()) {
     if (!entry.node->params().all().empty()) groups.push_back({entry.name, std::string(entry.node->type()), &entry.node->params()});
@@ -33,7 +33,7 @@ void Settings::set(const std::string& nodeParam, const std::string& value) {
   }
 }
 
-std::vector<std::string> Settings::values() {
+std::vector<std::string> Settings::values() const {
   std::vector<std::string> values;
   for (const Group& group : groups()) {
     for (const params::Param& param : group.table->all()) values.push_back(group.node + "." + param.name + "=" + param.get());

@@ -21,11 +21,11 @@ class Settings {
     params::Table* table = nullptr;
   };
   /// In the graph's order; the lights' options last.
-  std::vector<Group> groups();
+  std::vector<Group> groups() const;
   /// Throws BadInput, and nothing changed.
   void set(const std::string& nodeParam, const std::string& value);
   /// "node.param=value", every one.
-  std::vector<std::string> values();
+  std::vector<std::string> values() const;
 
   /// The graph as its file has it.
   void chooseGraph(const std::string& name);

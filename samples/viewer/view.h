@@ -33,12 +33,14 @@ bool operator==(const Lighting& a, const Lighting& b);
 bool operator==(const scene::CameraDescription& a, const scene::CameraDescription& b);
 
 struct View {
-  std::string scene;                   ///< as on the command line
-  std::string graph;                   ///< name or file
-  std::vector<std::string> settings;   ///< "node.param=value": every parameter, "lights." too
-  std::string bounces = "all";         ///< as --bounces
-  std::optional<Lighting> lighting;    ///< nothing: the scene's own
-  scene::CameraDescription camera;     ///< relative to the scene's origin
+  std::string scene;                  ///< as on the command line
+  std::string graph;                  ///< name or file
+  std::vector<std::string> settings;  ///< "node.param=value": every parameter, "lights." too
+  std::string bounces = "all";        ///< as --bounces
+  std::optional<Lighting> lighting;   ///< nothing: the scene's own
+  scene::CameraDescription camera;    ///< relative to the scene's origin
+  /// Instead of `camera`: the scene's own of that name or index; none of that name: its first.
+  std::optional<std::string> namedCamera;
   uint32_t width = 640, height = 360;  ///< of the picture
   Overlay overlay = Overlay::Picture;
   std::string aov;      ///< of Overlay::Picture: another AOV of the graph; empty: as a screen shows it

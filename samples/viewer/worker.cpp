@@ -129,10 +129,11 @@ bool Worker::showNewest(Session& session) {
     const std::lock_guard lock(mutex_);
     return quit_;
   };
-  hooks.sceneLoaded = [this](std::shared_ptr<const scene::Scene> scene) {
+  hooks.sceneLoaded = [this, &view](std::shared_ptr<const scene::Scene> scene) {
     {
       const std::lock_guard lock(mutex_);
       status_.scene = std::move(scene);
+      status_.sceneName = view.scene;
     }
     wake_();
   };

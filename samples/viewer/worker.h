@@ -28,6 +28,7 @@ class Worker {
     std::string error;                          ///< why the newest view is not shown, one line
     std::vector<std::string> saved;             ///< paths written, or lines that say why not, since the last status
     std::shared_ptr<const scene::Scene> scene;  ///< loaded
+    std::string sceneName;                      ///< as the view named it
     double firstPictureMs = 0;                  ///< since the worker was made; 0: none yet
     uint64_t pictureCount = 0, previewCount = 0;
   };

@@ -1,5 +1,7 @@
 // radivox view without a display, as a whole.
 #include "tests/cli/command.h"
+#include <algorithm>
+
 #include "engine/image/image.h"
 
 namespace radivox::test {
@@ -46,5 +48,32 @@ TEST_F(ViewTest, SlowWalksAPathFrameByFrame) {
   EXPECT_NE(image::readPng(path("f_00.png")).data, image::readPng(path("f_02.png")).data);
   expectError(with({"view", "--headless", "--views", path("v.json"), "--play", "wolk", "--out", path("a.png")}), 2, {"wolk", "walk"});
 }
+
+#ifdef RADIVOX_WITH_WINDOW
+TEST_F(ViewTest, SlowDrawsPanelsAndTruthWithoutADisplay) {
+  CommandSetup setup;
+  setup.environment = {{"DISPLAY", ""}};
+  const CommandResult result = runRadivox({"view", "builtin:cornell_point", "--headless", "--panels", "--truth", "--size", "640x240",
+                                           "--set", "voxelize.resolution=32", "--validate", "--out", path("p.png")},
+                                          setup);
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const image::Image image = image::readPng(path("p.png"));
+  ASSERT_EQ(image.width, 640u);
+  // 640 − 384 for two pictures of the same scene: means of the boxes' middles agree.
+  const auto mean = [&](uint32_t left) {
+    double sum = 0;
+    for (uint32_t y = 60; y < 200; ++y) {
+      for (uint32_t x = left; x < left + 88; ++x) sum += static_cast<double>(image.at(x, y, 1));
+    }
+    return sum / (140.0 * 88.0);
+  };
+  const double picture = mean(20), truth = mean(20 + 128);
+  EXPECT_GT(picture, 0.02);
+  EXPECT_NEAR(picture / truth, 1.0, 0.1);
+  double brightest = 0;
+  for (uint32_t x = 262; x < 640; ++x) brightest = std::max(brightest, static_cast<double>(image.at(x, 20, 0)));
+  EXPECT_GT(brightest, 0.5) << "no letters on the panels";
+}
+#endif
 
 }  // namespace radivox::test
