@@ -204,6 +204,16 @@ void App::saveScreenshot() {
   worker_.save(png + ".exr");
 }
 
+bool App::canDumpVoxels() {
+#ifdef RADIVOX_WITH_VDB
+  return true;
+#else
+  return false;
+#endif
+}
+
+void App::dumpVoxels() { worker_.save(freeName("radivox_", ".vdb") + ".vdb"); }
+
 void App::addBookmark() {
   views.bookmarks.push_back({"view " + std::to_string(views.bookmarks.size() + 1), walk.camera()});
   saveViews();

@@ -30,6 +30,8 @@ class App {
   // Files dropped onto the window, keys and buttons.
   void open(const std::string& sceneOrFile);  ///< .gltf, .glb, builtin:…; .exr: the picture to compare with; .json: views
   void saveScreenshot();                      ///< .png of what is shown, .exr of every AOV
+  static bool canDumpVoxels();                ///< the build has modules/vdb
+  void dumpVoxels();                          ///< .vdb of every grid
   void addBookmark();
   void jumpTo(const scene::CameraDescription& camera);
   void startRecording();

@@ -6,6 +6,9 @@
 
 #include "engine/error.h"
 #include "samples/cli/picture.h"
+#ifdef RADIVOX_WITH_VDB
+#include "modules/vdb/dump.h"
+#endif
 
 namespace radivox::viewer {
 
@@ -166,6 +169,19 @@ image::Layer Method::aov(const std::string& name, const scene::Scene& scene) {
     if (aov.name == name) return cli::downloadAov(device_, *executor_, *job_, aov, scene);
   }
   throw Error(ErrorCode::BadInput, "AOV " + name + " is not kept by this picture; wait for the full one, or choose another graph");
+}
+
+void Method::dumpVoxels(const std::string& path, const scene::Scene& scene) {
+#ifdef RADIVOX_WITH_VDB
+  vdb::DumpRequest request;
+  request.file = path;
+  request.scene = scene.name;
+  request.origin = scene.origin;
+  vdb::dumpFrame(device_, job_->graph, *executor_, traits_, request);
+#else
+  throw Error(ErrorCode::Unsupported,
+              path + ": this build writes no voxels of " + scene.name + "; install libopenvdb-dev and configure it anew");
+#endif
 }
 
 std::vector<std::string> Method::aovNames() const {

@@ -243,6 +243,9 @@ void Session::save(const std::string& path) {
   } else if (extension == ".png") {
     if (!lastPixels_) throw Error(ErrorCode::BadInput, "there is no picture yet; wait for it");
     image::writePngBytes(path, lastPixels_->width, lastPixels_->height, 4, lastPixels_->rgba);
+  } else if (extension == ".vdb" || extension == ".nvdb") {
+    if (!full_ || !full_->isLit()) throw Error(ErrorCode::BadInput, "there is no full picture yet; wait for it");
+    full_->dumpVoxels(path, *loaded_);
   } else {
     throw Error(ErrorCode::BadInput, "'" + path + "': unknown kind of file; end the name in .exr or .png");
   }

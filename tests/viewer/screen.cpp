@@ -37,7 +37,7 @@ Screen::Screen(const std::filesystem::path& folder) : folder_(folder) {
     const int nothing = ::open("/dev/null", O_WRONLY);
     ::dup2(nothing, STDERR_FILENO);
     ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1024x768x24", "-fbdir", place.c_str(), "-nolisten", "tcp",
-             static_cast<char*>(nullptr));
+             "-noreset", static_cast<char*>(nullptr));
     ::_exit(126);
   }
   ::close(ends[1]);

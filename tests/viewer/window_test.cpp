@@ -59,7 +59,11 @@ TEST_F(WindowTest, SlowAnswersKeysAndMouseAndNeverWaits) {
       thread.join();
     }
   } join{viewer, screen};
-  ASSERT_TRUE(screen.wait(90, [](const auto& p) { return glm::length(meanOf(p, 0, 60, kArea, kHeight - 60)) > 20.f; }));
+  if (!screen.wait(60, [](const auto& p) { return glm::length(meanOf(p, 0, 60, kArea, kHeight - 60)) > 20.f; })) {
+    screen.act("key ctrl+q");
+    viewer.join();
+    FAIL() << "no picture: " << result.exitCode << " " << result.err;
+  }
   ASSERT_TRUE(screen.act("mousemove 180 210"));
   const viewer::Pixels first = screen.settle(kArea, kHeight, 2.0);
   const auto differs = [&](const viewer::Pixels& a, const viewer::Pixels& b) { return shareThatDiffers(a, b, 0, 60, kArea, kHeight - 60); };

@@ -66,6 +66,9 @@ void Gui::takeKeys(App& app) {
       case 'P':
         app.saveScreenshot();
         break;
+      case 'V':
+        if (App::canDumpVoxels()) app.dumpVoxels();
+        break;
       case 'M':
         app.addBookmark();
         break;

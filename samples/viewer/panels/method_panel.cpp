@@ -1,5 +1,6 @@
 // Graph, preset, bounces, and a widget for every parameter.
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <cmath>
 
@@ -71,6 +72,9 @@ bool drawParam(const std::string& node, const params::Param& param, const std::f
     case params::Type::UInt:
     case params::Type::Float:
       changed = drawNumber(label.c_str(), param, text);
+      break;
+    default:
+      changed = ImGui::InputText(label.c_str(), &text, ImGuiInputTextFlags_EnterReturnsTrue);
       break;
   }
   explain(param);

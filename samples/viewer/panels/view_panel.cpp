@@ -61,6 +61,7 @@ void drawViewPanel(App& app) {
   ImGui::SameLine(190.f);
   if (Truth::isAvailable()) ImGui::Checkbox("T path-traced truth", &app.truth);
   if (ImGui::Button("P screenshot (.png and .exr)")) app.saveScreenshot();
+  if (App::canDumpVoxels() && ImGui::Button("V voxels (.vdb)")) app.dumpVoxels();
   ImGui::Separator();
   drawHelp();
   ImGui::Separator();

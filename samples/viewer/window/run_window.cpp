@@ -107,6 +107,9 @@ void watch(GLFWwindow* window, Events& events) {
 /// Turns of the event loop until the window closes. Nothing in it waits but for events.
 int runLoop(GLFWwindow* window, App& app, Gui& gui, Events& events, Presenter& presenter, LoopReport& report) {
   double lastInput = glfwGetTime(), lastFrame = 0, lastTurn = lastInput;
+  // Before the first turn, so that the first picture is asked for at the size it is shown.
+  ImGui_ImplGlfw_NewFrame();
+  presenter.show(gui.draw(app));
   bool due = true;  // a frame would show something new
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !gui.wantsToQuit()) {
     if (cli::isInterrupted()) return cli::kInterruptedExitCode;
