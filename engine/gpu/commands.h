@@ -92,6 +92,8 @@ class Commands {
     vkCmdSetViewport(commands_, 0, 1, &viewport);
     vkCmdSetScissor(commands_, 0, 1, &scissor);
   }
+  /// Inside rendering: the scissor alone, which the attachment holds.
+  void setScissor(const VkRect2D& scissor) { vkCmdSetScissor(commands_, 0, 1, &scissor); }
 
   static constexpr uint32_t kMaxGroupsX = 32768;
 

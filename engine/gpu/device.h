@@ -54,6 +54,8 @@ struct DeviceOptions {
   bool pushDescriptors = true;                        ///< false forces the descriptor-pool fallback (tests)
   bool conservativeRasterization = true;              ///< false hides the hardware extension (tests)
   std::function<void(const std::string&)> onMessage;  ///< validation messages; default: stderr and count
+  std::vector<std::string> instanceExtensions;        ///< more to enable, for a host that shows windows; Unsupported where they are not
+  std::vector<std::string> deviceExtensions;          ///< likewise
 };
 
 /// Handles of a host's device. The host keeps ownership and must have enabled what DeviceRequirements (requirements.h) asks for.

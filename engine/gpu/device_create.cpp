@@ -111,6 +111,11 @@ void DeviceBuilder::makeInstance(const DeviceOptions& options) {
   }
   if (debugUtils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   d.capabilities_.debugUtils = debugUtils;
+  for (const std::string& name : options.instanceExtensions) {
+    if (!offersInstanceExtension(nullptr, name.c_str()))
+      throw Error(ErrorCode::Unsupported, "the Vulkan loader lacks " + name + "; update libvulkan1 and the driver");
+    extensions.push_back(name.c_str());
+  }
 
   const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   VkValidationFeaturesEXT validation{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
@@ -210,11 +215,17 @@ void DeviceBuilder::makeDevice(const DeviceOptions& options) {
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, requirements.chain()};
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<uint32_t>(requirements.extensions().size());
-  info.ppEnabledExtensionNames = requirements.extensions().data();
+  std::vector<const char*> extensions = requirements.extensions();
+  const std::vector<std::string> offered = listDeviceExtensions(d.physicalDevice_);
+  for (const std::string& name : options.deviceExtensions) {
+    if (!contains(offered, name.c_str())) throw Error(ErrorCode::Unsupported, "the device lacks " + name + "; choose another device");
+    extensions.push_back(name.c_str());
+  }
+  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateDevice(d.physicalDevice_, &info, nullptr, &d.device_), "vkCreateDevice");
   vkGetDeviceQueue(d.device_, d.queueFamily_, 0, &d.queue_);
-  readCapabilities({requirements.extensions().begin(), requirements.extensions().end()}, *requirements.chain());
+  readCapabilities({extensions.begin(), extensions.end()}, *requirements.chain());
 }
 
 void DeviceBuilder::readCapabilities(const std::vector<std::string>& enabledExtensions, const VkPhysicalDeviceFeatures2& enabled) {

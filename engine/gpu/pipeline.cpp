@@ -176,9 +176,14 @@ void Pipeline::makeRaster(Device& device, const RasterPipelineInfo& info) {
   depth.depthTestEnable = info.depthFormat != VK_FORMAT_UNDEFINED ? VK_TRUE : VK_FALSE;
   depth.depthWriteEnable = depth.depthTestEnable;
   depth.depthCompareOp = info.depthCompare;
-  VkPipelineColorBlendAttachmentState opaque{};
-  opaque.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  const std::vector<VkPipelineColorBlendAttachmentState> attachments(info.colorFormats.size(), opaque);
+  VkPipelineColorBlendAttachmentState color{};
+  color.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  color.blendEnable = info.blend ? VK_TRUE : VK_FALSE;
+  color.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+  color.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  color.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  color.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  const std::vector<VkPipelineColorBlendAttachmentState> attachments(info.colorFormats.size(), color);
   VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   blend.attachmentCount = static_cast<uint32_t>(attachments.size());
   blend.pAttachments = attachments.data();

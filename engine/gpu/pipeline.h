@@ -58,9 +58,10 @@ struct RasterPipelineInfo {
   VkCullModeFlags cullMode = VK_CULL_MODE_NONE;
   bool depthClamp = false;
   bool conservative = false;  ///< overestimate; needs Capabilities::conservativeRasterization
+  bool blend = false;         ///< colour over what is there by its alpha; alpha stays 1 over 1
 };
 // Raster pipelines have no vertex input (vertex pulling from storage buffers), triangle lists, front face counter-clockwise,
-// dynamic viewport and scissor, no blending.
+// dynamic viewport and scissor.
 
 class Pipeline {
  public:

@@ -13,6 +13,7 @@
 #include "samples/cli/options.h"
 #include "samples/report/options.h"
 #include "samples/stability/options.h"
+#include "samples/viewer/view_command.h"
 
 namespace radivox::cli {
 
@@ -145,6 +146,36 @@ void addStabilityOptions(CLI::App* command, stability::SuiteOptions& suite, Opti
   addRepeated(command, "--module", options.modules, "a library with more nodes and cases; may be repeated", "FILE.so");
 }
 
+void addViewOptions(CLI::App* command, Options& options, viewer::ViewOptions& view) {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...] (default: builtin:atrium)")
+      ->type_name("");
+  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
+      ->type_name("NAME|FILE.json");
+  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
+  addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
+  command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) the converged solution")
+      ->type_name("N|all");
+  command->add_option("--camera", options.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
+  command->add_option("--overlay", view.overlay, "picture (default), voxels, clusters, ... or an AOV of the graph")->type_name("NAME");
+  command->add_flag("--blocks", view.blocks, "overlays on the voxels themselves");
+  command->add_option("--point", view.point, "the pixel that the mouse points at, for --overlay visible_clusters")->type_name("X,Y");
+  command->add_option("--reference", view.reference, "stored picture, for --overlay error")->type_name("FILE.exr");
+  command->add_flag("--truth", view.truth, "path-traced truth beside the picture");
+  command->add_option("--views", view.views, "camera bookmarks, paths and lights; kept there, too (default: radivox_views.json)")
+      ->type_name("FILE.json");
+  command->add_option("--play", view.play, "begin with this path of --views")->type_name("NAME");
+  command->add_option("--size", options.size, "pixels of the window, or of the picture without one (default: 1280x720)")->type_name("WxH");
+  command->add_flag("--headless", view.headless, "no window: write pictures");
+  addRepeated(command, "--out", options.outputs, "headless: picture to write, frame_####.png for every frame; may be repeated",
+              "FILE.exr|.png");
+  command->add_option("--frames", options.frames, "headless: how many frames, 30 a second (default: 1)")->type_name("N");
+  command->add_flag("--panels", view.panels, "headless: the window's panels around the picture");
+  command->add_option("--stats", options.stats, "times to write when it ends")->type_name("FILE.json");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+  command->add_flag("--validate", options.validate, "with Vulkan's validation layer; its messages are errors");
+}
+
 /// Words that no option of the command took. CLI11's own report knows no nearest name.
 void refuseExtras(const CLI::App& command, const std::string& what) {
   const std::vector<std::string> extras = command.remaining();
@@ -213,6 +244,9 @@ int run(int argc, char** argv) {
   stability::SuiteOptions suiteOptions;
   CLI::App* stability = app.add_subcommand("stability", "stiff and extreme cases, each against its known answer, as stability.html");
   addStabilityOptions(stability, suiteOptions, options);
+  viewer::ViewOptions viewOptions;
+  CLI::App* view = app.add_subcommand("view", "walk through a scene in a window, and look inside its light");
+  addViewOptions(view, options, viewOptions);
   CLI::App* graph = app.add_subcommand("graph", "print the plan: order, what is left out and why, memory, barriers");
   addPlanOptions(graph, options);
   graph->add_option("--format", options.format, "text (default), dot or json")->type_name("NAME");
@@ -236,9 +270,10 @@ int run(int argc, char** argv) {
   CLI::App* nodes = app.add_subcommand("nodes", "every node as it describes itself: ports and parameters");
   addRepeated(nodes, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
   nodes->add_option("--format", options.format, "text (default) or markdown, all of it: docs/nodes.md")->type_name("NAME");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "stability", "vdb",
-                                                 "graph",  "needs",     "scene",   "info",   "nodes"};
-  for (CLI::App* command : {render, reference, compare, report, stability, vdb, graph, needs, scene, info, nodes}) command->allow_extras();
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "view", "stability",
+                                                 "vdb",    "graph",     "needs",   "scene",  "info", "nodes"};
+  for (CLI::App* command : {render, reference, compare, report, view, stability, vdb, graph, needs, scene, info, nodes})
+    command->allow_extras();
 
   try {
     app.parse(argc, argv);
@@ -251,10 +286,11 @@ int run(int argc, char** argv) {
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
-    throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, stability, vdb, graph, needs, scene, info or nodes, or see "
-                "`radivox "
-                "--help`");
+    throw Error(
+        ErrorCode::BadInput,
+        "a command is missing; give render, reference, compare, report, view, stability, vdb, graph, needs, scene, info or nodes, or see "
+        "`radivox "
+        "--help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -274,6 +310,12 @@ int run(int argc, char** argv) {
   if (command == scene && options.scene.empty()) {
     throw Error(ErrorCode::BadInput,
                 "NAME is missing; give a built-in scene of `radivox info`, as in `radivox scene cornell --out cornell.glb`");
+  }
+  if (command == view) {
+    if (view->count("--size") == 0) options.size = "1280x720";
+    // Gathers by faces, which stay lit while the camera walks.
+    if (!options.graph && options.presets.empty()) options.graph = "clustered_voxel";
+    return viewer::runView(viewOptions, options);
   }
   requireScene(options, command->get_name());
   if (command == scene) return runScene(options);

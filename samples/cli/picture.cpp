@@ -156,15 +156,17 @@ std::vector<image::Layer> arrangeLayers(std::vector<image::Layer> layers) {
   return layers;
 }
 
-void writePreview(const std::string& path, const image::Layer& layer) {
-  if (isId(layer.name)) return image::writePng(path, paintIds(layer.image));
-  if (layer.name == "albedo" || layer.name == "display") return image::writePng(path, layer.image);
+image::Image displayReferred(const image::Layer& layer) {
+  if (isId(layer.name)) return paintIds(layer.image);
+  if (layer.name == "albedo" || layer.name == "display") return layer.image;
   if (layer.name == "normal") {
     image::Image encoded = layer.image;
     for (float& value : encoded.data) value = image::decodeSrgb(std::clamp(0.5f + 0.5f * value, 0.f, 1.f));
-    return image::writePng(path, encoded);
+    return encoded;
   }
-  image::writePng(path, image::scaled(layer.image, image::exposureOf(layer.image)));
+  return image::scaled(layer.image, image::exposureOf(layer.image));
 }
+
+void writePreview(const std::string& path, const image::Layer& layer) { image::writePng(path, displayReferred(layer)); }
 
 }  // namespace radivox::cli

@@ -14,8 +14,9 @@ image::Layer downloadAov(gpu::Device& device, graph::Executor& executor, const J
 /// The layers as the command writes them: one AOV as R, G, B; several under their names.
 std::vector<image::Layer> arrangeLayers(std::vector<image::Layer> layers);
 
-/// Writes a layer for the eye: radiance and irradiance exposed so that the 99th percentile of luminance is 1, albedo as it is, normals as
-/// colours.
+/// A layer for the eye, as image::writePng takes it: radiance and irradiance exposed so that the 99th percentile of luminance is 1, albedo as
+/// it is, normals and ids as colours.
+image::Image displayReferred(const image::Layer& layer);
 void writePreview(const std::string& path, const image::Layer& layer);
 
 }  // namespace radivox::cli
