@@ -96,6 +96,8 @@ TEST_F(WindowTest, SlowAnswersKeysAndMouseAndNeverWaits) {
   screen.act("sleep 0.5");
   ASSERT_TRUE(screen.act("search --name radivox windowmap"));
   screen.act("mousemove 200 150");
+  screen.act("sleep 0.5");
+  screen.act("search --name radivox windowfocus");  // which a window manager would do
   screen.act("key 3");
   EXPECT_TRUE(screen.wait(30, [&](const auto& p) { return shareThatDiffers(small, p, 100, 60, 300, 200) > 0.5; })) << "shown again";
 
