@@ -108,6 +108,17 @@ void Session::showPreview(const View& view, const Hooks& hooks) {
   small.width = std::max(view.width / divisor, 1u);
   small.height = std::max(view.height / divisor, 1u);
   if (view.pointer) small.pointer = glm::min(*view.pointer / divisor, glm::uvec2(small.width - 1, small.height - 1));
+  if (!shown_.pixels && view.bounces != "0") {
+    // The very first of a scene: direct light needs a fifth of the pipelines.
+    View direct = small;
+    direct.bounces = "0";
+    direct.overlay = Overlay::Picture;
+    Method method(*device_, lit_, direct, options_.modules, Method::Quality::Preview);
+    method.run({}, hooks.stop);
+    shown_ = finish(method, direct, true, millisecondsSince(start));
+    shown_.view = view;
+    publish(shown_, hooks);
+  }
   if (preview_ && !preview_->update(lit_, small)) preview_.reset();
   if (!preview_) preview_ = std::make_unique<Method>(*device_, lit_, small, options_.modules, Method::Quality::Preview);
   preview_->run({}, hooks.stop);

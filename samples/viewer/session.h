@@ -1,6 +1,6 @@
 // The engine behind the viewer: takes views, makes pictures. No window, no threads of its own; one thread at a time.
 //
-//   scene → preview (cheap settings, on the screen within a second or two) → full picture → overlays
+//   scene → direct light (the first picture) → preview (cheap settings, a second or two later) → full picture → overlays
 //
 // A full picture may take long to prepare. Between two of its steps the session looks at the newest view: a camera that moves on is shown
 // in the preview meanwhile; a view that wants other light ends the work.

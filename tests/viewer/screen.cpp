@@ -41,10 +41,13 @@ Screen::Screen(const std::filesystem::path& folder) : folder_(folder) {
     ::_exit(126);
   }
   ::close(ends[1]);
+  // The whole line: the server ends when its last byte finds nobody.
+  std::string line;
   pollfd ready{ends[0], POLLIN, 0};
-  char number[16] = {};
-  if (::poll(&ready, 1, 20000) == 1 && ::read(ends[0], number, sizeof(number) - 1) > 0) {
-    display_ = ":" + std::to_string(std::atoi(number));
+  char letter = 0;
+  while (line.find('\n') == std::string::npos && ::poll(&ready, 1, 20000) == 1 && ::read(ends[0], &letter, 1) == 1) line += letter;
+  if (line.find('\n') != std::string::npos) {
+    display_ = ":" + std::to_string(std::atoi(line.c_str()));
   } else {
     fault_ = "Xvfb did not start";
   }

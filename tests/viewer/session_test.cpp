@@ -1,6 +1,7 @@
 // The session: what runs for which change, what previews and overlays show. Named Slow: each makes pipelines of two graphs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <set>
 
@@ -120,15 +121,24 @@ TEST(SessionSlow, PreviewsFirstAndWhileItPrepares) {
     if (what == "cluster") newest.camera.position.x = 0.25f;
   };
   EXPECT_TRUE(session.show(view, hooks));
-  ASSERT_EQ(pictures.size(), 3u);
-  EXPECT_TRUE(pictures[0].preview);
-  EXPECT_TRUE(pictures[0].view.camera == view.camera);
-  EXPECT_TRUE(pictures[1].preview);
-  EXPECT_EQ(pictures[1].view.camera.position.x, 0.25f);
-  EXPECT_FALSE(pictures[2].preview);
-  EXPECT_TRUE(pictures[2].view.camera == view.camera);
+  ASSERT_EQ(pictures.size(), 4u);
+  for (size_t i : {0u, 1u}) {
+    EXPECT_TRUE(pictures[i].preview);
+    EXPECT_TRUE(pictures[i].view.camera == view.camera);
+  }
+  const auto makesVoxels = [](const Picture& picture) {
+    const auto& nodes = picture.report->stats.nodes;
+    return std::any_of(nodes.begin(), nodes.end(), [](const graph::NodeStats& node) { return node.name == "voxelize"; });
+  };
+  EXPECT_FALSE(makesVoxels(pictures[0])) << "direct light comes first";
+  EXPECT_TRUE(makesVoxels(pictures[1]));
   EXPECT_NE(pictures[0].pixels->rgba, pictures[1].pixels->rgba);
-  EXPECT_EQ(pictures[2].pixels->width, 96u);
+  EXPECT_TRUE(pictures[2].preview);
+  EXPECT_EQ(pictures[2].view.camera.position.x, 0.25f);
+  EXPECT_FALSE(pictures[3].preview);
+  EXPECT_TRUE(pictures[3].view.camera == view.camera);
+  EXPECT_NE(pictures[1].pixels->rgba, pictures[2].pixels->rgba);
+  EXPECT_EQ(pictures[3].pixels->width, 96u);
 
   // Another light ends the work at once.
   pictures.clear();
