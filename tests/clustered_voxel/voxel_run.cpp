@@ -9,35 +9,6 @@
 
 namespace radivox::oracle {
 
-scene::Scene sceneOf(const Soup& soup) {
-  scene::Scene scene;
-  for (const SoupTriangle& triangle : soup) {
-    shared::Material material{};
-    material.albedo = triangle.albedo;
-    material.alpha = 1.f;
-    material.emission = triangle.emission;
-    material.baseTexture = material.emissiveTexture = shared::kNoTexture;
-    if (triangle.doubleSided) material.flags |= shared::kMaterialDoubleSided;
-    if (triangle.emission != glm::vec3(0.f)) material.flags |= shared::kMaterialEmissive;
-    scene.triangleMaterials.push_back(static_cast<uint32_t>(scene.materials.size()));
-    scene.materials.push_back(material);
-    scene.materialNames.push_back("material " + std::to_string(scene.materials.size()));
-    for (int i = 0; i < 3; ++i) {
-      shared::Vertex vertex{};
-      vertex.position = triangle.position[i];
-      vertex.normal = triangle.normal[i];
-      scene.indices.push_back(static_cast<uint32_t>(scene.vertices.size()));
-      scene.vertices.push_back(vertex);
-    }
-  }
-  if (soup.empty()) {
-    scene.materials.emplace_back();
-    scene.materialNames.emplace_back("none");
-  }
-  scene.cameras.emplace_back();
-  return scene;
-}
-
 VoxelRun::VoxelRun(gpu::Device& device, const scene::Scene& scene, uint32_t resolution, const std::string& method, const Settings& settings)
     : device_(device), gpuScene_(device, scene), traits_(scene.traits()) {
   graph_.add("voxelize", std::make_unique<clustered_voxel::Voxelize>());

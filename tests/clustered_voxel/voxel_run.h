@@ -12,9 +12,6 @@
 
 namespace radivox::oracle {
 
-/// A scene of these triangles, a material each.
-scene::Scene sceneOf(const Soup& soup);
-
 class VoxelRun {
  public:
   using Settings = std::vector<std::pair<std::string, std::string>>;

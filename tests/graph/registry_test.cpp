@@ -78,6 +78,9 @@ TEST(Registry, ModulesOfThisTreeAreLibrariesToo) {
 #ifdef RADIVOX_WITH_REFERENCE
   loaded.load(folder + "libradivox_reference.so");
 #endif
+#ifdef RADIVOX_WITH_VDB
+  loaded.load(folder + "libradivox_vdb.so");
+#endif
   ASSERT_EQ(loaded.types().size(), linked.types().size());
   EXPECT_GT(loaded.types().size(), 10u);
   for (size_t i = 0; i < linked.types().size(); ++i) {

@@ -24,6 +24,8 @@ using Soup = std::vector<SoupTriangle>;
 
 /// Materials' constant factors; textures and alpha masks are left out.
 Soup soupOf(const scene::Scene& scene);
+/// A scene of these triangles, a material each.
+scene::Scene sceneOf(const Soup& soup);
 /// Two triangles: corner, corner + u, corner + u + v, corner + v; the front looks along u × v.
 void addQuad(Soup& soup, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, const glm::vec3& albedo = glm::vec3(0.5f),
              const glm::vec3& emission = glm::vec3(0.f));

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <glm/gtc/quaternion.hpp>
 
-#include "tests/clustered_voxel/voxel_run.h"
 #include "tests/oracles/gpu_fixture.h"
 #include "tests/oracles/pipeline.h"
+#include "tests/oracles/voxel_structures.h"
 
 namespace radivox {
 namespace {
