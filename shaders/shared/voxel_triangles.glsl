@@ -8,6 +8,7 @@
 #include "shared/traversal.glsl"
 
 const float kNearSlack = 1e-3;       // voxels: hits this far outside a voxel still count for it
+const float kBehind = -5e-4;         // voxels: a ray that starts in a corner may start behind the other wall, by rounding; less than rays are lifted
 const float kEdgeSlack = 1e-5;       // closes the seams between triangles
 
 float triangleDot(vec3 a, vec3 b) {
@@ -57,7 +58,7 @@ bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint v
                      out uint triangle) {
   vec3 exits = traversalExits(ray, cursor.voxel);
   time = min(exits.x, min(exits.y, exits.z)) + kNearSlack;
-  float least = max(cursor.time - kNearSlack, 0.0);
+  float least = max(cursor.time - kNearSlack, kBehind);
   bool found = false;
   normal = vec3(0.0);
   triangle = 0u;
