@@ -8,7 +8,6 @@
 #include "shared/traversal.glsl"
 
 const float kNearSlack = 1e-3;       // voxels: hits this far outside a voxel still count for it
-const float kBehind = -5e-4;         // voxels: a ray that starts in a corner may start behind the other wall, by rounding; less than rays are lifted
 const float kEdgeSlack = 1e-5;       // closes the seams between triangles
 
 float triangleDot(vec3 a, vec3 b) {
@@ -54,11 +53,14 @@ bool meetsTriangle(TraversalRay ray, uint id, float least, float most, out float
 
 // The nearest triangle that the ray meets in the cursor's voxel; `own` never counts. `normal` is not of unit length and looks at the ray.
 // Returns whether there is one. Lanes stay together; those without `live` test nothing.
-bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint voxel, uint own, out float time, out vec3 normal,
+//
+// `lift`: how far the ray's origin was lifted off its own surface. In a corner it may lie behind the other wall all the same, by rounding: triangles
+// up to half of that behind it still stop the ray.
+bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint voxel, uint own, float lift, out float time, out vec3 normal,
                      out uint triangle) {
   vec3 exits = traversalExits(ray, cursor.voxel);
   time = min(exits.x, min(exits.y, exits.z)) + kNearSlack;
-  float least = max(cursor.time - kNearSlack, kBehind);
+  float least = max(cursor.time - kNearSlack, -0.5 * lift);
   bool found = false;
   normal = vec3(0.0);
   triangle = 0u;

@@ -27,8 +27,9 @@ struct WalkHit {
 };
 
 // Voxels are searched for triangles while the ray enters them before `nearDistance`; beyond, and where a voxel's list is empty (too many triangles),
-// its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from. Lanes stay together; all must call.
-WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float nearDistance, uint random, bool live) {
+// its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from, `lift` (voxels) off it. Lanes stay together; all must call.
+WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random,
+                bool live) {
   WalkHit result = WalkHit(kHitNothing, 0.0, kNone, vec3(0.0));
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   bool atStart = true;
@@ -43,7 +44,7 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float ne
     float time;
     vec3 normal;
     uint triangle;
-    if (nearestTriangle(way, cursor, looking, voxel, own, time, normal, triangle)) {
+    if (nearestTriangle(way, cursor, looking, voxel, own, lift, time, normal, triangle)) {
       precise vec3 unit = normal * preciseInverseSqrt(max(triangleDot(normal, normal), 1e-30));
       result = WalkHit(faceTowards(voxel, unit, random), time, triangle, unit);
       looking = going = false;

@@ -116,7 +116,7 @@ void main() {
     vec2 square = fract(directions[place * rays + min(ray, rays - 1u)] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
     TraversalRay way = makeTraversalRay(origin, (t * cos(turn) + b * sin(turn)) * radius + n * sqrt(1.0 - square.x));
-    WalkHit hit = walkRay(way, start, excluded, own, kNear ? nearDistance : 0.0, rayRandom(i, ray), busy);
+    WalkHit hit = walkRay(way, start, excluded, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray), busy);
     bool isFace = busy && hit.face < kHitBack;
     uint face = isFace ? hit.face : 0u;
     vec3 radiosity = faceRadiosity[face];

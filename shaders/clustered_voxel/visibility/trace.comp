@@ -158,7 +158,7 @@ void main() {
       }
       TraversalRay way = makeTraversalRay(from, alongNormal(decodeDirection(directions[table + at]), about));
       ivec3 first = clamp(ivec3(floor(from)), ivec3(0), ivec3(castSize) - 1);
-      WalkHit hit = walkRay(way, first, excluded, own, triangleDistance, rayRandom(s, at), ray < end);
+      WalkHit hit = walkRay(way, first, excluded, own, kPieceLift, triangleDistance, rayRandom(s, at), ray < end);
       if (!idle && ray < end) hits[row * rayCount + at] = hitWord(hit.face, hit.time, way.direction);
     }
     return;
