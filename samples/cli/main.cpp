@@ -313,8 +313,6 @@ int run(int argc, char** argv) {
   }
   if (command == view) {
     if (view->count("--size") == 0) options.size = "1280x720";
-    // Gathers by faces, which stay lit while the camera walks.
-    if (!options.graph && options.presets.empty()) options.graph = "clustered_voxel";
     return viewer::runView(viewOptions, options);
   }
   requireScene(options, command->get_name());

@@ -6,7 +6,10 @@ namespace radivox::viewer {
 
 Settings::Settings(const cli::Options& options) : modules_(options.modules) { load(options); }
 
-void Settings::load(const cli::Options& options) {
+void Settings::load(const cli::Options& given) {
+  cli::Options options = given;
+  // The graph that gathers by faces: they stay lit while the camera walks, and the overlays show them.
+  if (!options.graph && options.presets.empty()) options.graph = "clustered_voxel";
   auto job = std::make_unique<cli::Job>();
   cli::prepareJob(options, true, *job);
   job_ = std::move(job);

@@ -65,6 +65,11 @@ PROJECT
   }
 }
 
+# The same picture but for the last bits of its G-buffer's positions.
+same() {
+  cmp -s "$1" "$2" || "$prefix/bin/radivox" compare "$1" "$2" | awk '$1 == "psnr" { found = $2 > 100 } END { exit !found }'
+}
+
 case $step in
   package)
     rm -rf "$work"
@@ -81,7 +86,7 @@ case $step in
     quietly cmake --build "$work/embed"
     expect "4 of 5 frames in the host's own command buffer" "$work/embed/embed" $scene "$work/embed.exr" $size
     quietly "$prefix/bin/radivox" render $scene --size $size --graph clustered_voxel "${settings[@]}" --out "$work/render.exr"
-    cmp "$work/embed.exr" "$work/render.exr" || fail "samples/embed draws another picture than radivox render"
+    same "$work/embed.exr" "$work/render.exr" || fail "samples/embed draws another picture than radivox render"
     ;;
   plugin)
     # A project of its own, as its reader has it.
@@ -104,7 +109,7 @@ case $step in
   c)
     expect "3 of 4 frames in the host's own command buffer" \
       "$work/embed/c/embed_c" $scene "$prefix/share/radivox/graphs/clustered_voxel.json" "$work/c.exr" $size
-    cmp "$work/c.exr" "$work/render.exr" || fail "samples/embed/c draws another picture than radivox render"
+    same "$work/c.exr" "$work/embed.exr" || fail "samples/embed/c draws another picture than radivox render"
     # Alone, by pkg-less means: the header and the library are all it needs.
     quietly cc -std=c99 -pedantic-errors -Wall -Wextra -Werror -Wno-missing-field-initializers -I"$prefix/include/radivox" \
       "$source/samples/embed/c/embed.c" -o "$work/alone" -L"$prefix/lib" -lradivox -lvulkan -Wl,-rpath,"$prefix/lib"

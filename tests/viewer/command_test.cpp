@@ -24,7 +24,7 @@ TEST_F(ViewTest, RefusesInOneLine) {
 }
 
 TEST_F(ViewTest, SlowDrawsWhatRenderDraws) {
-  ASSERT_EQ(runRadivox(with({"render", "--out", path("render.png")})).exitCode, 0);
+  ASSERT_EQ(runRadivox(with({"render", "--graph", "clustered_voxel", "--out", path("render.png")})).exitCode, 0);
   const CommandResult view = runRadivox(with({"view", "--headless", "--validate", "--out", path("view.png"), "--stats", path("v.json")}));
   ASSERT_EQ(view.exitCode, 0) << view.err;
   const image::Image a = image::readPng(path("render.png")), b = image::readPng(path("view.png"));

@@ -63,7 +63,7 @@ void GatherPixels::declare(graph::Declaration& d) {
     port.unwantedReason = reason;
   };
   constexpr const char* kNoTriangles = "gather_pixels.near is 0: rays test no triangles";
-  readNear("triangle", "id + 1 of the pixel's triangle", near_ > 0.f, kNoTriangles);
+  d.read("triangle", "id + 1 of the pixel's triangle");
   readNear("triangle_first", "first triangle of each voxel", near_ > 0.f, kNoTriangles);
   readNear("triangle_ids", "triangles of each voxel", near_ > 0.f, kNoTriangles);
   readNear("scene.vertices", "Vertex", near_ > 0.f, kNoTriangles);
@@ -145,7 +145,7 @@ void GatherPixels::record(graph::RecordContext& context) {
                  context.buffer("planes"),
                  context.buffer("plane_extras"),
                  grown.empty() ? distance : *grown.front(),
-                 hasTriangles_ ? context.image("triangle") : raw,
+                 context.image("triangle"),
                  optional("triangle_first", hasTriangles_),
                  ids.empty() ? distance : *ids.front(),
                  optional("scene.vertices", hasTriangles_),
