@@ -35,8 +35,10 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   bool atStart = true;
   bool looking = live && nearDistance > 0.0;
   bool going = live;
+  TraversalCursor last = cursor;  // the voxel before, if it was searched for triangles and the ray stepped out of it
+  bool hasLast = false;
   while (subgroupAny(looking)) {
-    if (castMarch(way, cursor, looking)) atStart = false;
+    if (castMarch(way, cursor, looking)) atStart = hasLast = false;
     looking = looking && !isOutside(cursor.voxel) && cursor.time < nearDistance;
     uint voxel = looking ? voxelIndex(ivec3(cursor.voxel)) : 0u;
     looking = looking && voxel != kNone;
@@ -59,13 +61,23 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
         looking = going = false;
       }
     }
+    if (looking) {
+      last = cursor;
+      hasLast = true;
+    }
     TraversalCursor stepped = cursor;
     traversalStep(way, stepped);
     cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(looking));
     cursor.time = looking ? stepped.time : cursor.time;
     atStart = atStart && !looking;
   }
+  // A surface that bends passes between the planes of two voxels. Where the first of them was searched for triangles and none was met, the ray is in
+  // front of whatever its planes say it has crossed.
   uint inFront = 0u;
+  if (subgroupAny(going && hasLast)) {
+    uint crossed = castFace(way, last, going && hasLast, 0u, inFront, random);
+    inFront = going && hasLast ? (crossed == kHitNothing ? inFront : 0x3fu) : 0u;
+  }
   while (subgroupAny(going)) {
     if (castMarch(way, cursor, going)) {
       inFront = 0u;
