@@ -39,6 +39,9 @@ gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindi
 Bounce::Bounce()
     : table_({params::choice("solver", &solver_, {"chebyshev", "plain"}, "accelerated, or plain iteration (for comparison)",
                              params::Invalidates::Rerun),
+              params::choice("last", &last_, {"faces", "clusters"},
+                             "who receives the last bounce: each face by its own rays (where they are connected), or its cluster",
+                             params::Invalidates::Plan),
               params::swept(params::number("residual", &residual_, {1e-7, 0.1}, "where to stop: largest residual over the largest source",
                                            params::Invalidates::Rerun),
                             {"0.01", "0.001", "0.0001"}, "0.000001"),
@@ -60,6 +63,13 @@ void Bounce::declare(graph::Declaration& d) {
     graph::Port& port = d.read(name, "form factors between clusters");
     port.optional = port.unwanted = !needsMatrix;
     port.unwantedReason = "one bounce needs no light between clusters";
+  }
+  const bool needsRows = bounces > 1 && last_ == Last::Faces;
+  for (const char* name : {"visibility_row_start", "visibility_entries", "chunk_table"}) {
+    graph::Port& port = d.read(name, "rows of the faces");
+    port.optional = true;
+    port.unwanted = !needsRows;
+    port.unwantedReason = bounces > 1 ? "bounce.last=clusters" : "one bounce needs no light between clusters";
   }
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
@@ -104,7 +114,8 @@ void Bounce::prepare(graph::PrepareContext& context) {
     sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 7);
     finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 4);
   }
-  finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 6);
+  finishFaces_ =
+      makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 12, {{0, context.has("visibility_entries") ? 1u : 0u}});
 }
 
 BounceControl Bounce::makeControl(uint32_t clusterCount, bool counted) const {
@@ -164,10 +175,7 @@ void Bounce::record(graph::RecordContext& context) {
     commands.push(push);
     commands.dispatchItems(clusterCount, kGroup);
   }
-  commands.bind(finishFaces_, {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"),
-                               hasEmission ? context.buffer("received") : indirect, indirect, context.buffer("face_radiosity")});
-  commands.push(push);
-  commands.dispatchItems(faceCount, kGroup);
+  recordFaces(context, push, counted ? bounces - 1 : 0);
   commands.copy(control, status, kStatusBytes, offsetof(BounceControl, iterations));
 }
 
@@ -183,6 +191,25 @@ void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& pus
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kRowsPerGroup);
   commands.barrier();
+}
+
+void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_t sweeps) const {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& none = context.buffer("indirect");
+  const bool hasRows = context.has("visibility_entries");
+  const gpu::Buffer& received = push.hasEmission != 0 ? context.buffer("received") : none;
+  const gpu::Buffer& emission = push.hasEmission != 0 ? context.buffer("mean_emission") : none;
+  // Where bounces are counted, faces receive the last one in place of the clusters: from what these sent before their last sweep.
+  const bool counted = hasRows && sweeps > 0;
+  push.senders = counted && (sweeps - 1) % 2 != 0 ? push.clusterCount : 0;
+  commands.barrier();
+  commands.bind(finishFaces_, {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"), received, none,
+                               context.buffer("face_radiosity"), hasRows ? context.buffer("visibility_row_start") : none,
+                               hasRows ? context.buffer("chunk_table") : none,
+                               counted ? context.buffer("iterate") : context.buffer("cluster_radiosity"),
+                               context.buffer("direct_radiosity"), emission, context.buffer("clusters")});
+  commands.push(push);
+  commands.dispatchItems(push.faceCount, kGroup);
 }
 
 void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push, uint32_t count) const {

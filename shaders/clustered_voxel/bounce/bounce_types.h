@@ -12,6 +12,7 @@ struct BouncePush {
   float tolerance;      // of the residual, relative to the greatest source
   uint startBelow;      // 1: x₀ = −max b (see bounce.h), 0: x₀ = b
   uint hasEmission;
+  uint senders;         // where in its buffer the vector starts that the last bounce at faces starts from
 };
 
 RADIVOX_CONST uint kPhaseWarmUp = 0u;     // plain steps, which also bound the spectral radius
