@@ -58,14 +58,17 @@ gpu::Pipeline RayBench::makePipeline(uint32_t task) const {
 }
 
 void RayBench::sortRows() {
+  const gpu::Buffer& faces = *executor_.findBuffer(node_ + ".faces");
+  const gpu::Buffer* lists = executor_.findBuffer(node_ + ".triangle_first");
   const gpu::Pipeline sort(device_, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/sort_rows.comp",
-                                                             .bindings = {gpu::BindingType::StorageBuffer, gpu::BindingType::StorageBuffer},
-                                                             .pushConstantBytes = 8});
+                                                             .bindings = std::vector<gpu::BindingType>(3, gpu::BindingType::StorageBuffer),
+                                                             .pushConstantBytes = 8,
+                                                             .constants = {{0, lists != nullptr ? 1u : 0u}}});
   device_.submitAndWait([&](VkCommandBuffer handle) {
     gpu::Commands commands(device_, handle, pool_);
     for (size_t i = 0; i < chunks_.size(); ++i) {
       constexpr VkDeviceSize kBytes = kChunkRows * sizeof(uint32_t);
-      commands.bind(sort, {*executor_.findBuffer(node_ + ".faces"), {order_, i * kBytes, kBytes}});
+      commands.bind(sort, {faces, {order_, i * kBytes, kBytes}, lists != nullptr ? *lists : faces});
       commands.push(std::array{chunks_[i].firstFace, chunks_[i].rows});
       commands.dispatch(1);
     }

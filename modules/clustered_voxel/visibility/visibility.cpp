@@ -108,7 +108,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   };
   countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
   planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
-  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 2, 8, {});
+  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 3, 8, {{0, context.has("triangle_ids") ? 1u : 0u}});
   merge_ = make("clustered_voxel/visibility/merge.comp", 6, 20, {{0, weights_ == Weights::Seen ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
@@ -252,10 +252,16 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   const gpu::Buffer& hits = context.buffer("hits");
   const gpu::Buffer& table = context.buffer("table");
   const gpu::Buffer& offsets = context.buffer("offsets");
+  const bool hasTriangles = context.has("triangle_ids");
+  std::vector<const gpu::Buffer*> ids;
+  if (hasTriangles) ids = context.grown("triangle_ids");
+  const auto optional = [&](const char* name) -> const gpu::Buffer& {
+    return hasTriangles ? context.buffer(name) : context.buffer("grid");
+  };
   struct {
     uint32_t firstFace, rowCount;
   } sortPush{firstFace, rows};
-  commands.bind(sortRows_, {context.buffer("faces"), order});
+  commands.bind(sortRows_, {context.buffer("faces"), order, optional("triangle_first")});
   commands.push(sortPush);
   commands.dispatch(1);
   commands.fill(table, shared::kEmptySlot);
@@ -266,12 +272,6 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
     uint32_t voxelCount;
     float triangles;
   } tracePush{firstFace, rows, rays_, near_, static_cast<uint32_t>(context.count("voxels")), triangles_};
-  const bool hasTriangles = context.has("triangle_ids");
-  std::vector<const gpu::Buffer*> ids;
-  if (hasTriangles) ids = context.grown("triangle_ids");
-  const auto optional = [&](const char* name) -> const gpu::Buffer& {
-    return hasTriangles ? context.buffer(name) : context.buffer("grid");
-  };
   // An absent clearance is never read.
   const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
   const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;

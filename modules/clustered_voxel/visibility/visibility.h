@@ -23,8 +23,8 @@
 // Weights serve means over clusters (transfer, inject, bounce): in a closed scene a_r F_rs = a_s F_sr makes them M a_s, but of a face that others
 // cover in part only what is seen of it counts, and a mean over areas would dim the cluster by what lies buried.
 //
-// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction (sort_rows.comp): that,
-// and the clearance bytes, are what makes it fast. Rows do not depend on either.
+// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction and by how many triangles their voxel has
+// (sort_rows.comp): that, and the clearance bytes, are what makes it fast. Rows do not depend on either.
 #pragma once
 
 #include <chrono>
