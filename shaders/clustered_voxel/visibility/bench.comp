@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include "clustered_voxel/visibility/trace.glsl"
 layout(constant_id = 5) const uint kTask = kBenchRays;
 layout(set = 0, binding = 11, scalar) buffer Rays { BenchRay rays[]; };
-layout(set = 0, binding = 21, scalar) writeonly buffer Times { float times[]; };  // voxels; negative: nothing was hit
+layout(set = 0, binding = 22, scalar) writeonly buffer Times { float times[]; };  // voxels; negative: nothing was hit
 
 void writeRay(uint row, uint at, uint place) {
   Start start = startOf(firstFace + row);

@@ -42,19 +42,30 @@ layout(set = 0, binding = 17, scalar) readonly buffer TriangleMaterials { uint t
 layout(set = 0, binding = 18, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Textures { Texture textures[]; };
 layout(set = 0, binding = 20, scalar) readonly buffer Pieces { uvec2 pieces[]; };  // middle, area (clustered_voxel.triangles)
+layout(constant_id = 6) const bool kCorners = false;  // triangleCorners is there
+layout(set = 0, binding = 21) uniform sampler2D triangleCorners;
 #include "shared/voxel_walk.glsl"
 
 const float kPieceLift = 2e-3;  // voxels: pieces' middles are good to 1e-3
 
-// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back); n: that side's normal.
-float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
-  uint id = triangleIds[entry];
+vec3 unitNormal(uint id) {
+  if (kCorners) {
+    ivec2 at = cornerTexel(id);
+    return vec3(texelFetch(triangleCorners, at, 0).w, texelFetch(triangleCorners, at + ivec2(1, 0), 0).w,
+                texelFetch(triangleCorners, at + ivec2(2, 0), 0).w);
+  }
   vec3 a = vertices[indices[3u * id]].position;
   vec3 e1 = vertices[indices[3u * id + 1u]].position - a;
   vec3 e2 = vertices[indices[3u * id + 2u]].position - a;
   precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-  precise float squared = triangleDot(across, across);
-  precise vec3 unit = across * (preciseInverseSqrt(max(squared, 1e-30)) * (backs ? -1.0 : 1.0));
+  precise vec3 unit = across * preciseInverseSqrt(max(triangleDot(across, across), 1e-30));
+  return unit;
+}
+
+// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back); n: that side's normal.
+float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
+  vec3 front = unitNormal(triangleIds[entry]);
+  vec3 unit = backs ? -front : front;
   n = unit;
   precise float weight = max((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1], 0.0) * uintBitsToFloat(pieces[entry].y);
   return weight;
