@@ -153,8 +153,8 @@ class Yardstick {
 
 #endif
 
-std::vector<CastResult> measure(RayBench& bench, const scene::Scene& scene, const RayBench::Settings& settings, uint32_t runs,
-                                uint32_t threads) {
+std::vector<CastResult> measure(RayBench& bench, [[maybe_unused]] const scene::Scene& scene, const RayBench::Settings& settings,
+                                uint32_t runs, [[maybe_unused]] uint32_t threads) {
   std::vector<CastResult> results;
   std::vector<std::vector<double>> seconds(std::size(kCasts));
   for (const Cast cast : kCasts) {
