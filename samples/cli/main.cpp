@@ -134,6 +134,21 @@ void addVdbOptions(CLI::App* command, Options& options, VdbOptions& vdb) {
   command->add_option("--diff", vdb.diff, "instead: how two such files differ, grid by grid")->type_name("A B")->expected(2);
 }
 
+void addBenchOptions(CLI::App* command, Options& options, BenchOptions& bench) {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...] (default: builtin:atrium)")
+      ->type_name("");
+  command->add_option("--rays", bench.rays, "about so many, from faces all over the scene (default: 1000000)")->type_name("N");
+  command->add_option("--runs", bench.runs, "of each, whose median counts (default: 5)")->type_name("N");
+  command->add_option("--threads", bench.threads, "of Embree; 0 (default): all, as CPU devices take")->type_name("N");
+  addRepeated(command, "--out", options.outputs, "figures to write", "FILE.json");
+  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
+      ->type_name("NAME|FILE.json");
+  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
+  addRepeated(command, "--set", options.sets, "one parameter, as in voxelize.resolution=128; may be repeated", "node.param=value");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addRepeated(command, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
+}
+
 void addStabilityOptions(CLI::App* command, stability::SuiteOptions& suite, Options& options) {
   command->add_option("--out", suite.out, "folder for stability.html and stability.csv")->type_name("DIR");
   addRepeated(command, "--method", suite.methods, "only this graph; may be repeated (default: all that compute indirect light)",
@@ -261,6 +276,9 @@ int run(int argc, char** argv) {
   needs->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
   needs->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
   needs->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  BenchOptions benchOptions;
+  CLI::App* bench = app.add_subcommand("bench", "speed of voxel rays beside Embree's closest hits of the same rays, and how they agree");
+  addBenchOptions(bench, options, benchOptions);
   CLI::App* scene = app.add_subcommand("scene", "write a scene as .glb: a built-in one, or a file flattened to what is lit");
   scene->add_option("NAME", options.scene, "a built-in scene of `radivox info`, as NAME[?key=value&...], or a .gltf/.glb file")
       ->type_name("");
@@ -270,9 +288,9 @@ int run(int argc, char** argv) {
   CLI::App* nodes = app.add_subcommand("nodes", "every node as it describes itself: ports and parameters");
   addRepeated(nodes, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
   nodes->add_option("--format", options.format, "text (default) or markdown, all of it: docs/nodes.md")->type_name("NAME");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "view", "stability",
-                                                 "vdb",    "graph",     "needs",   "scene",  "info", "nodes"};
-  for (CLI::App* command : {render, reference, compare, report, view, stability, vdb, graph, needs, scene, info, nodes})
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "view", "stability", "vdb",
+                                                 "graph",  "needs",     "bench",   "scene",  "info", "nodes"};
+  for (CLI::App* command : {render, reference, compare, report, view, stability, vdb, graph, needs, bench, scene, info, nodes})
     command->allow_extras();
 
   try {
@@ -286,11 +304,10 @@ int run(int argc, char** argv) {
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
-    throw Error(
-        ErrorCode::BadInput,
-        "a command is missing; give render, reference, compare, report, view, stability, vdb, graph, needs, scene, info or nodes, or see "
-        "`radivox "
-        "--help`");
+    throw Error(ErrorCode::BadInput,
+                "a command is missing; give render, reference, compare, report, view, stability, vdb, graph, needs, bench, scene, info or "
+                "nodes, or see "
+                "`radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -310,6 +327,10 @@ int run(int argc, char** argv) {
   if (command == scene && options.scene.empty()) {
     throw Error(ErrorCode::BadInput,
                 "NAME is missing; give a built-in scene of `radivox info`, as in `radivox scene cornell --out cornell.glb`");
+  }
+  if (command == bench) {
+    if (options.scene.empty()) options.scene = "builtin:atrium";
+    return runBench(options, benchOptions);
   }
   if (command == view) {
     if (view->count("--size") == 0) options.size = "1280x720";

@@ -62,6 +62,13 @@ struct VdbOptions {
   std::vector<std::string> diff;  ///< instead: these two
 };
 
+/// What `radivox bench` takes beside SCENE, --graph, --set and --out.
+struct BenchOptions {
+  std::string rays = "1000000";
+  std::string runs = "5";
+  std::string threads = "0";
+};
+
 struct Size {
   uint32_t width = 0, height = 0;
 };
@@ -81,6 +88,8 @@ int runVdb(const Options& options, const VdbOptions& vdb);
 int runGraph(const Options& options);
 /// A table of what leaving out saves; `options` without a scene.
 int runNeeds(const Options& options, const std::vector<std::string>& scenes, const std::string& runs);
+/// Speed of voxel rays beside Embree.
+int runBench(const Options& options, const BenchOptions& bench);
 int runScene(const Options& options);
 int runInfo(const Options& options);
 int runNodes(const Options& options);

@@ -1,11 +1,13 @@
 // Rays against the triangles in a voxel: exact, where planes of the mean surface are too coarse. Over shared/traversal.glsl. The includer
 // declares grid, vertices[], indices[], triangleMaterials[], materials[], textures[] (for alpha masks), triangleFirst[] and triangleIds[]
-// (clustered_voxel.triangles), kMasked, and the extensions of shared/texture.glsl.
+// (clustered_voxel.triangles), kMasked, `uniform sampler2D triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
+// shared/texture.glsl.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #extension GL_KHR_shader_subgroup_vote : require
 #include "shared/texture.glsl"
 #include "shared/traversal.glsl"
+#include "shared/triangle_corners.h"
 
 const float kNearSlack = 1e-3;       // voxels: hits this far outside a voxel still count for it
 const float kEdgeSlack = 1e-5;       // closes the seams between triangles
@@ -31,11 +33,27 @@ bool isCovered(uint id, vec2 weights) {
   return alpha >= material.alphaCutoff;
 }
 
+// Corners in grid space.
+void loadCorners(uint id, out vec3 a, out vec3 b, out vec3 c) {
+  if (kCorners) {
+    ivec2 at = cornerTexel(id);
+    a = texelFetch(triangleCorners, at, 0).xyz;
+    b = texelFetch(triangleCorners, at + ivec2(1, 0), 0).xyz;
+    c = texelFetch(triangleCorners, at + ivec2(2, 0), 0).xyz;
+  } else {
+    a = toGridSpace(grid, vertices[indices[3u * id]].position);
+    b = toGridSpace(grid, vertices[indices[3u * id + 1u]].position);
+    c = toGridSpace(grid, vertices[indices[3u * id + 2u]].position);
+  }
+}
+
 // Does the ray meet the triangle at least < t < most (voxels)? Only what is the same on every device: no fused operations, a reciprocal of our own.
 bool meetsTriangle(TraversalRay ray, uint id, float least, float most, out float time, out vec3 normal) {
-  vec3 a = toGridSpace(grid, vertices[indices[3u * id]].position) - ray.origin;
-  vec3 e1 = toGridSpace(grid, vertices[indices[3u * id + 1u]].position) - ray.origin - a;
-  vec3 e2 = toGridSpace(grid, vertices[indices[3u * id + 2u]].position) - ray.origin - a;
+  vec3 p0, p1, p2;
+  loadCorners(id, p0, p1, p2);
+  vec3 a = p0 - ray.origin;
+  vec3 e1 = p1 - ray.origin - a;
+  vec3 e2 = p2 - ray.origin - a;
   precise vec3 q = vec3(ray.direction.y * e2.z - ray.direction.z * e2.y, ray.direction.z * e2.x - ray.direction.x * e2.z,
                         ray.direction.x * e2.y - ray.direction.y * e2.x);
   precise float determinant = triangleDot(e1, q);

@@ -123,5 +123,25 @@ TEST_F(TrianglesTest, CrowdedVoxelsHaveNoList) {
   EXPECT_GT(crowded, 10u);
 }
 
+/// Where triangles.corners is not read (too many triangles, or a graph without the edge) rays load vertices.
+TEST_F(TrianglesTest, CornersAndVerticesGiveTheSameBits) {
+  const auto render = [](bool corners) {
+    PipelineOptions options;
+    options.graph = "clustered_voxel_pixels";
+    options.settings = {{"voxelize.resolution", "16"}, {"visibility.rays", "4"}, {"gather_pixels.rays", "2"}};
+    options.outputs = {"visibility.weights", "gather_pixels.irradiance"};
+    if (!corners) options.disconnected = {"visibility.corners", "gather_pixels.corners"};
+    Pipeline p(oracles::sharedDevice(), scene::loadScene("builtin:cornell_point"), options);
+    p.run();
+    EXPECT_EQ(p.executor->findImage("triangles.corners") != nullptr, corners);
+    return std::pair(p.buffer<uint32_t>("visibility.weights"), p.picture("gather_pixels.irradiance").data);
+  };
+  const auto [weights, picture] = render(true);
+  const auto [otherWeights, otherPicture] = render(false);
+  EXPECT_EQ(weights, otherWeights);
+  EXPECT_EQ(picture, otherPicture);
+  EXPECT_GT(*std::max_element(picture.begin(), picture.end()), 0.f);
+}
+
 }  // namespace
 }  // namespace radivox

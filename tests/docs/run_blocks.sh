@@ -88,6 +88,7 @@ esac
 [[ ${1:-} == view ]] && ! has --headless && arguments+=(--headless --out view.png --size 64x36 --set voxelize.resolution=32)
 [[ ${1:-} == stability ]] && arguments+=(--case "plates 0.01 voxels apart, lit" --method clustered_voxel)
 [[ ${1:-} == needs ]] && arguments=(needs builtin:plane --runs 1 --size 64x36)
+[[ ${1:-} == bench ]] && arguments+=(--rays 10000 --runs 1 --set voxelize.resolution=32)
 [[ ${1:-} == reference ]] && { has --spp || arguments+=(--spp 2); }
 [[ ${1:-} == render ]] && { has --max-error || has --budget-ms; } && arguments+=(--calibration-time 2)
 [[ ${1:-} == render ]] && ! has --max-error && ! has --budget-ms && ! has --graph && ! has voxelize.resolution=64 &&

@@ -27,6 +27,7 @@ Pipeline::Pipeline(gpu::Device& device, scene::Scene scene_, const PipelineOptio
   const std::string path = std::string(RADIVOX_SOURCE_DIR) + "/samples/graphs/" + options.graph + ".json";
   graph = std::make_unique<graph::Graph>(graph::Graph::fromJson(readFile(path), path, registry));
   for (const auto& [name, value] : options.settings) graph->set(name, value);
+  for (const std::string& to : options.disconnected) graph->disconnect(to);
   graph->clearOutputs();
   for (const std::string& output : options.outputs) graph->output(output);
 

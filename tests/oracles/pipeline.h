@@ -16,6 +16,7 @@ namespace radivox::oracles {
 struct PipelineOptions {
   std::string graph = "clustered_voxel";                      ///< samples/graphs/NAME.json
   std::vector<std::pair<std::string, std::string>> settings;  ///< "voxelize.resolution" = "32"
+  std::vector<std::string> disconnected;                      ///< edges into these are taken away
   std::vector<std::string> outputs{"composite.color"};        ///< what the graph keeps
   uint32_t width = 96, height = 64;
   uint32_t bounces = scene::kAllBounces;

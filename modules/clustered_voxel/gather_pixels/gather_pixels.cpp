@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "modules/clustered_voxel/structure.h"
+#include "shaders/shared/triangle_corners.h"
 
 namespace radivox::clustered_voxel {
 
@@ -66,6 +67,8 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.read("triangle", "id + 1 of the pixel's triangle");
   readNear("triangle_first", "first triangle of each voxel", near_ > 0.f, kNoTriangles);
   readNear("triangle_ids", "triangles of each voxel", near_ > 0.f, kNoTriangles);
+  readNear("corners", "corners of triangles", near_ > 0.f && d.traits.triangleCount <= shared::kMostCornerTriangles,
+           "gather_pixels.near is 0, or there are too many triangles for an image");
   readNear("scene.vertices", "Vertex", near_ > 0.f, kNoTriangles);
   readNear("scene.indices", "three a triangle", near_ > 0.f, kNoTriangles);
   constexpr const char* kNoShadow =
@@ -93,16 +96,18 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   hasTriangles_ = context.has("triangle_ids");
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
   hasShadow_ = context.has("shadow_depth");
-  std::vector<BindingType> bindings(28, kB);
-  for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
+  std::vector<BindingType> bindings(29, kB);
+  for (const size_t map : {25, 26, 28}) bindings[map] = BindingType::SampledImage;
   for (const size_t image : {6, 7, 11, 15}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
-    return gpu::Pipeline(device,
-                         gpu::ComputePipelineInfo{
-                             .shader = "clustered_voxel/gather_pixels/trace.comp",
-                             .bindings = bindings,
-                             .pushConstantBytes = 24,
-                             .constants = {{0, skip}, {1, hasTriangles_ ? 1u : 0u}, {2, isMasked_ ? 1u : 0u}, {3, hasShadow_ ? 1u : 0u}}});
+    return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
+                                                          .bindings = bindings,
+                                                          .pushConstantBytes = 24,
+                                                          .constants = {{0, skip},
+                                                                        {1, hasTriangles_ ? 1u : 0u},
+                                                                        {2, isMasked_ ? 1u : 0u},
+                                                                        {3, hasShadow_ ? 1u : 0u},
+                                                                        {4, context.has("corners") ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -157,7 +162,8 @@ void GatherPixels::record(graph::RecordContext& context) {
                  optional("scene.shadow_views", hasShadow_),
                  map("shadow_depth"),
                  map("shadow_triangle"),
-                 optional("face_irradiance", hasShadow_)});
+                 optional("face_irradiance", hasShadow_),
+                 context.has("corners") ? context.image("corners") : absent_});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);

@@ -1,7 +1,7 @@
 // clustered_voxel.gather_pixels — indirect irradiance on screen, gathered by rays from the pixels themselves.
 //
 // reads   gbuffer position, normal, triangle; the voxel structure and distance; planes, plane_extras, clearance? of visibility; face_radiosity;
-//         triangle_first, triangle_ids of triangles and scene geometry (near > 0); shadow_depth, shadow_triangle, face_irradiance, scene.lights,
+//         triangle_first, triangle_ids, corners? of triangles and scene geometry (near > 0); shadow_depth, shadow_triangle, face_irradiance, scene.lights,
 //         .shadow_views (shadow=on, where no surface emits)
 // writes  irradiance image RGBA32F  E_indirect at the pixel's surface, W/m²; a: sky visibility; 0 on the sky
 // runs    when the view, the voxels or the radiosity change

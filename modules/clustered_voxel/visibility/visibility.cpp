@@ -7,6 +7,7 @@
 #include "modules/clustered_voxel/visibility/directions.h"
 #include "shaders/clustered_voxel/visibility/visibility.h"
 #include "shaders/shared/clearance.h"
+#include "shaders/shared/triangle_corners.h"
 
 namespace radivox::clustered_voxel {
 namespace {
@@ -16,8 +17,9 @@ using graph::Extent;
 using graph::Shape;
 using shared::kRowsPerChunk;
 
-constexpr size_t kTraceBindings = 21;
+constexpr size_t kTraceBindings = 22;
 constexpr size_t kDirectionsBinding = 9;
+constexpr size_t kCornersBinding = 21;
 
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
 
@@ -70,6 +72,10 @@ void Visibility::declare(graph::Declaration& d) {
     port.unwanted = triangles_ == 0.f;
     port.unwantedReason = "visibility.triangles=0";
   }
+  graph::Port& corners = d.read("corners", "corners of triangles");
+  corners.optional = true;
+  corners.unwanted = triangles_ == 0.f || d.traits.triangleCount > shared::kMostCornerTriangles;
+  corners.unwantedReason = "visibility.triangles=0, or there are too many triangles for an image";
   const Extent faces = Extent::of("faces");
   d.write("row_start", Shape::buffer(4, faces * (kRowsPerChunk + 1) / kRowsPerChunk + (kRowsPerChunk + 1)),
           "first entry of each row within its chunk");
@@ -101,14 +107,17 @@ void Visibility::prepare(graph::PrepareContext& context) {
   scan_ = std::make_unique<gpu::Scan>(device);
   const auto make = [&](std::string_view shader, size_t bindings, uint32_t pushBytes, std::vector<gpu::SpecializationConstant> constants) {
     std::vector<BindingType> types(bindings, kB);
-    if (bindings == kTraceBindings) types[kDirectionsBinding] = BindingType::UniformBuffer;
+    if (bindings == kTraceBindings) {
+      types[kDirectionsBinding] = BindingType::UniformBuffer;
+      types[kCornersBinding] = BindingType::SampledImage;
+    }
     return gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = shader, .bindings = std::move(types), .pushConstantBytes = pushBytes, .constants = std::move(constants)});
   };
   countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
   planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
-  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 2, 8, {});
+  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 3, 8, {{0, context.has("triangle_ids") ? 1u : 0u}});
   merge_ = make("clustered_voxel/visibility/merge.comp", 6, 20, {{0, weights_ == Weights::Seen ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
@@ -117,6 +126,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   } else {
     const auto hit = static_cast<uint32_t>(hit_);
     const uint32_t near = context.has("triangle_ids") ? 1 : 0;
+    const uint32_t corners = context.has("corners") ? 1 : 0;
     const uint32_t masked = near != 0 && context.traits().alphaMasked ? 1 : 0;
     if (skip_ == Skip::Clearance) {
       clearanceRows_ = make("clustered_voxel/visibility/clearance_rows.comp", 5, 0, {});
@@ -125,10 +135,10 @@ void Visibility::prepare(graph::PrepareContext& context) {
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
     trace_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
+                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}});
     if (skip_ == Skip::Clearance)
-      traceBricks_ =
-          make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24, {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}});
+      traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
+                          {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}});
   }
   std::vector<uint32_t> directions = makeDirections(rays_);
   directions.resize(shared::kShiftCount * shared::kMaxRays);
@@ -252,10 +262,16 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   const gpu::Buffer& hits = context.buffer("hits");
   const gpu::Buffer& table = context.buffer("table");
   const gpu::Buffer& offsets = context.buffer("offsets");
+  const bool hasTriangles = context.has("triangle_ids");
+  std::vector<const gpu::Buffer*> ids;
+  if (hasTriangles) ids = context.grown("triangle_ids");
+  const auto optional = [&](const char* name) -> const gpu::Buffer& {
+    return hasTriangles ? context.buffer(name) : context.buffer("grid");
+  };
   struct {
     uint32_t firstFace, rowCount;
   } sortPush{firstFace, rows};
-  commands.bind(sortRows_, {context.buffer("faces"), order});
+  commands.bind(sortRows_, {context.buffer("faces"), order, optional("triangle_first")});
   commands.push(sortPush);
   commands.dispatch(1);
   commands.fill(table, shared::kEmptySlot);
@@ -266,12 +282,6 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
     uint32_t voxelCount;
     float triangles;
   } tracePush{firstFace, rows, rays_, near_, static_cast<uint32_t>(context.count("voxels")), triangles_};
-  const bool hasTriangles = context.has("triangle_ids");
-  std::vector<const gpu::Buffer*> ids;
-  if (hasTriangles) ids = context.grown("triangle_ids");
-  const auto optional = [&](const char* name) -> const gpu::Buffer& {
-    return hasTriangles ? context.buffer(name) : context.buffer("grid");
-  };
   // An absent clearance is never read.
   const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
   const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
@@ -295,7 +305,8 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
                                                  optional("scene.triangle_materials"),
                                                  optional("scene.materials"),
                                                  optional("scene.textures"),
-                                                 ids.empty() ? context.buffer("grid") : *context.grown("pieces").front()});
+                                                 ids.empty() ? context.buffer("grid") : *context.grown("pieces").front(),
+                                                 context.has("corners") ? context.image("corners") : absent_});
   commands.push(tracePush);
   const uint32_t lanes = (rows + 63) / 64 * 64;
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);

@@ -1,7 +1,7 @@
 // clustered_voxel.visibility — what each voxel face sees: form factors by counting rays.
 //
 // reads   grid; occupancy, distance (per brick); rank; voxels, mask, first (per voxel); faces; labels (cluster of each face)
-//         triangle_first, triangle_ids, pieces? of triangles and scene geometry (triangles > 0)
+//         triangle_first, triangle_ids, pieces?, corners? of triangles and scene geometry (triangles > 0)
 // writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first entry of each row within its chunk
 //         entries+ u32                                rows, a buffer a chunk: shared/voxel.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
@@ -23,8 +23,8 @@
 // Weights serve means over clusters (transfer, inject, bounce): in a closed scene a_r F_rs = a_s F_sr makes them M a_s, but of a face that others
 // cover in part only what is seen of it counts, and a mean over areas would dim the cluster by what lies buried.
 //
-// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction (sort_rows.comp): that,
-// and the clearance bytes, are what makes it fast. Rows do not depend on either.
+// Tracing, merging and filling are passes of their own, and rows are traced sorted by direction and by how many triangles their voxel has
+// (sort_rows.comp): that, and the clearance bytes, are what makes it fast. Rows do not depend on either.
 #pragma once
 
 #include <chrono>
@@ -75,6 +75,7 @@ class Visibility : public graph::Node {
 
   gpu::Pipeline countPlanes_, planes_, clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, trace_, traceBricks_, merge_, fill_;
   gpu::Buffer directions_;
+  gpu::Image absent_;  ///< for optional images
   std::unique_ptr<gpu::Scan> scan_;
   shared::Grid grid_{};
   VkDeviceSize maxRange_ = 0;

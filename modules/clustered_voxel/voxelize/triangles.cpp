@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "shaders/shared/triangle_corners.h"
+
 namespace radivox::clustered_voxel {
 
 using graph::Extent;
@@ -24,6 +26,10 @@ void Triangles::declare(graph::Declaration& d) {
   graph::Port& pieces = d.write("pieces", Shape::buffer(8, Extent::of("triangle_entries")),
                                 "middle of each triangle in its voxel (unorm 10:10:10), its area there (float bits, h²)");
   pieces.growable = pieces.optional = true;
+  d.write("corners",
+          Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, uint64_t{3} * shared::kCornerRow, Extent::of("triangles") / shared::kCornerRow + 1),
+          "corners of each triangle (grid space) and its normal, three texels each")
+      .optional = true;
   d.publishCount("triangle_entries", "", 0);
   d.scratch("next", Shape::buffer(4, voxels + 1), "triangles met, then the next free place of each voxel", use | graph::UseTransfer);
   d.scratch("total", Shape::buffer(4, 2), "entries, low and high word");
@@ -46,6 +52,10 @@ void Triangles::prepare(graph::PrepareContext& context) {
     pieces_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/voxelize/pieces.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
+  if (context.has("corners"))
+    corners_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/corners.comp",
+                                                              .bindings = {kB, kB, kB, gpu::BindingType::StorageImage},
+                                                              .pushConstantBytes = 4});
   scan_ = std::make_unique<gpu::Scan>(device);
 }
 
@@ -66,6 +76,13 @@ void Triangles::record(graph::RecordContext& context) {
   (isCount ? count_ : fill_).record(context, context.buffer("grid"), rest);
   commands.barrier();
   if (isCount) {
+    if (context.has("corners")) {
+      const auto triangles = static_cast<uint32_t>(context.count("triangles"));
+      commands.bind(corners_,
+                    {context.buffer("grid"), context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("corners")});
+      commands.push(triangles);
+      commands.dispatchItems(triangles, 64);
+    }
     commands.bind(limit_, {next, first});
     const struct { uint32_t voxelCount, most; } push{voxelCount, most_};
     commands.push(push);

@@ -4,6 +4,7 @@
 // writes  first  u32 × (V + 1)  first triangle of each voxel in ids
 //         ids+   u32            triangle ids, ascending within a voxel; publishes [triangle_entries]
 //         pieces+ uvec2         middle (encodePosition) and area (float bits, h²) of each triangle's part in the voxel; made only if read
+//         corners? RGBA32F      corners and normal of each triangle (shared/triangle_corners.h), 48 B; made only if read
 // runs    when the geometry or the voxels change; host-paced in two steps, since the number of entries must be known to store them
 // cost    two walks over the (triangle, voxel) pairs, a sort of short lists; 4 B an entry (about 5 entries a voxel of Sponza at N = 128)
 // source  beyond the paper (METHODS section 1, "The receiver is where the error sits"): exact geometry for the first voxels of a ray
@@ -34,7 +35,7 @@ class Triangles : public graph::Node {
   uint32_t most_ = 256;
   params::Table table_;
   TrianglePass count_, fill_;
-  gpu::Pipeline limit_, sort_, pieces_;
+  gpu::Pipeline limit_, sort_, pieces_, corners_;
   std::unique_ptr<gpu::Scan> scan_;
 };
 

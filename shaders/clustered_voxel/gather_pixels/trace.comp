@@ -39,6 +39,8 @@ layout(set = 0, binding = 24, scalar) readonly buffer ShadowViews { ShadowView s
 layout(set = 0, binding = 25) uniform sampler2DArray shadowDepth;
 layout(set = 0, binding = 26) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 27, scalar) readonly buffer FaceIrradiance { vec3 faceIrradiance[]; };
+layout(constant_id = 4) const bool kCorners = false;  // triangleCorners is there
+layout(set = 0, binding = 28) uniform sampler2D triangleCorners;
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;

@@ -1,0 +1,55 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+// For `radivox bench`: the rays of a chunk of voxel faces, and casting them as trace.comp does, one a lane. Rays lie in the order in which lanes
+// take them: the first ray of all rows, then the second.
+layout(local_size_x = 64) in;
+#include "clustered_voxel/visibility/bench.h"
+#include "clustered_voxel/visibility/visibility.h"
+#include "clustered_voxel/visibility/trace.glsl"
+layout(constant_id = 5) const uint kTask = kBenchRays;
+layout(set = 0, binding = 11, scalar) buffer Rays { BenchRay rays[]; };
+layout(set = 0, binding = 22, scalar) writeonly buffer Times { float times[]; };  // voxels; negative: nothing was hit
+
+void writeRay(uint row, uint at, uint place) {
+  Start start = startOf(firstFace + row);
+  uint own;
+  vec3 about;
+  TraversalRay way = rayFromPiece(start, at, about, own);
+  precise vec3 origin = way.origin + (kTask == kBenchLifted ? kBenchLift : 0.0) * about;
+  rays[place] = BenchRay(origin, start.excluded, way.direction, own);
+}
+
+float castRay(BenchRay ray, uint random, bool live) {
+  TraversalRay way = makeTraversalRay(ray.origin, ray.direction);
+  if (kTask == kBenchTraversal) {
+    TraversalCursor cursor;
+    live = traversalBegin(way, vec3(castSize), cursor) && live;
+    if (!live) cursor = TraversalCursor(vec3(-1.0), 0.0);
+    castMarch(way, cursor, live);
+    return isOutside(cursor.voxel) ? -1.0 : cursor.time;
+  }
+  float triangles = kTask == kBenchWalk ? triangleDistance : 0.0;
+  WalkHit hit = walkRay(way, voxelAt(ray.origin), ray.excluded, ray.own, kPieceLift, triangles, random, live);
+  return hit.face == kHitNothing ? -1.0 : hit.time;
+}
+
+void main() {
+  castBegin();
+  uint lanes = (rowCount + 63u) & ~63u;
+  uint item = radivoxItemIndex();
+  uint slot = item % lanes;
+  // No lane leaves early (castMarch): those without a ray follow another one and write nothing.
+  bool live = slot < rowCount && item / lanes < rayCount;
+  slot = min(slot, rowCount - 1u);
+  uint at = min(item / lanes, rayCount - 1u);
+  uint place = at * rowCount + slot;
+  if (kTask <= kBenchLifted) {
+    if (live) writeRay(order[slot], at, place);
+    return;
+  }
+  float time = castRay(rays[place], rayRandom(slot, at), live);
+  if (live) times[place] = time;
+}

@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// Corners and normals of triangles as rays fetch them: shared/triangle_corners.h.
+layout(local_size_x = 64) in;
+#define RADIVOX_BIND_GRID 0
+#include "shared/dispatch.glsl"
+#include "shared/scene.h"
+#include "shared/triangle_corners.h"
+#include "shared/voxel_lookup.glsl"
+layout(set = 0, binding = 1, scalar) readonly buffer Vertices { Vertex vertices[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Indices { uint indices[]; };
+layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D cornerImage;
+layout(push_constant, scalar) uniform Push { uint triangleCount; };
+
+void main() {
+  uint id = radivoxItemIndex();
+  if (id >= triangleCount) return;
+  vec3 a = vertices[indices[3u * id]].position;
+  vec3 b = vertices[indices[3u * id + 1u]].position;
+  vec3 c = vertices[indices[3u * id + 2u]].position;
+  precise vec3 e1 = b - a;
+  precise vec3 e2 = c - a;
+  precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+  precise float two = across.x * across.x + across.y * across.y;
+  precise float squared = two + across.z * across.z;
+  precise vec3 n = across * preciseInverseSqrt(max(squared, 1e-30));
+  ivec2 at = cornerTexel(id);
+  imageStore(cornerImage, at, vec4(toGridSpace(grid, a), n.x));
+  imageStore(cornerImage, at + ivec2(1, 0), vec4(toGridSpace(grid, b), n.y));
+  imageStore(cornerImage, at + ivec2(2, 0), vec4(toGridSpace(grid, c), n.z));
+}
