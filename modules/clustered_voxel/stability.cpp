@@ -5,6 +5,7 @@
 
 #include "engine/scene/builtin.h"
 #include "engine/stability/bench.h"
+#include "engine/text.h"
 #include "shaders/shared/voxel.h"
 #include "shaders/shared/voxel_codec.h"
 
@@ -17,12 +18,6 @@ using stability::RenderOptions;
 using stability::Row;
 
 constexpr const char* kMethod = "clustered_voxel";
-
-std::string print(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
 
 RenderOptions faceOptions(uint32_t resolution) {
   RenderOptions options;
@@ -62,7 +57,7 @@ InnerFaces listInnerFaces(stability::Render& render) {
 
 /// B = 1 at every face of a box that emits (1 − ρ)/π: E_indirect = ρ, of any face, from any number of clusters.
 void runFurnaceFaces(Bench& bench, Row& row, double albedo) {
-  const auto render = bench.render(scene::makeBuiltin("furnace", {{"albedo", print(albedo)}}), faceOptions(12));
+  const auto render = bench.render(scene::makeBuiltin("furnace", {{"albedo", printNumber(albedo)}}), faceOptions(12));
   const InnerFaces inner = listInnerFaces(*render);
   row.judge(albedo, stability::meanOf(inner.irradiance), 2e-4);
   row.error = inner.irradiance.empty() ? 1e30 : stability::largestFrom(inner.irradiance, albedo);
@@ -70,7 +65,7 @@ void runFurnaceFaces(Bench& bench, Row& row, double albedo) {
 
 /// What the lamp sends, 4πI, is what the walls keep.
 void runEnergyBalance(Bench& bench, Row& row, double albedo) {
-  const auto render = bench.render(scene::makeBuiltin("box", {{"albedo", print(albedo)}}), faceOptions(16));
+  const auto render = bench.render(scene::makeBuiltin("box", {{"albedo", printNumber(albedo)}}), faceOptions(16));
   const double sent = 4.0 * glm::pi<double>();
   // 1 W/sr. Texels count the lamp's flux to 2e-3; solid angles that are not covered would show at once.
   row.judge(sent, listInnerFaces(*render).absorbed, 5e-3, sent);
@@ -91,12 +86,13 @@ void runArea(Bench& bench, Row& row, uint32_t resolution, scene::Scene scene) {
 void runDifferential(Bench& bench, Row& row, uint32_t resolution, double albedo) {
   RenderOptions options = faceOptions(resolution);
   options.settings.push_back({"gather.estimator", "differential"});
-  const auto render = bench.render(scene::makeBuiltin("furnace", {{"albedo", print(albedo)}}), options);
+  const auto render = bench.render(scene::makeBuiltin("furnace", {{"albedo", printNumber(albedo)}}), options);
   const InnerFaces inner = listInnerFaces(*render);
   row.shown = true;
   row.judge(albedo, stability::meanOf(inner.irradiance), 2e-4);
   row.error = stability::largestFrom(inner.irradiance, albedo);
-  row.note = "largest E of a face " + print(row.error + albedo) + ": corners, where d goes to 0, diverge with 1/d^2 and nothing normalises";
+  row.note =
+      "largest E of a face " + printNumber(row.error + albedo) + ": corners, where d goes to 0, diverge with 1/d^2 and nothing normalises";
 }
 
 }  // namespace
@@ -104,7 +100,7 @@ void runDifferential(Bench& bench, Row& row, uint32_t resolution, double albedo)
 void addStabilityCases(plugin::Registry& registry) {
   for (const double albedo : {0.0, 0.5, 0.9, 0.99, 0.999}) {
     registry.addStabilityCase({.group = "faces",
-                               .name = "furnace, albedo " + print(albedo),
+                               .name = "furnace, albedo " + printNumber(albedo),
                                .answer = "E_indirect = albedo at every voxel face inside",
                                .run = [albedo](Bench& bench, Row& row) { runFurnaceFaces(bench, row, albedo); },
                                .method = kMethod,
@@ -112,7 +108,7 @@ void addStabilityCases(plugin::Registry& registry) {
   }
   for (const double albedo : {0.5, 0.9, 0.99, 0.999}) {
     registry.addStabilityCase({.group = "faces",
-                               .name = "energy balance, albedo " + print(albedo),
+                               .name = "energy balance, albedo " + printNumber(albedo),
                                .answer = "the walls of a closed box absorb what the lamp sends, 4 pi W",
                                .run = [albedo](Bench& bench, Row& row) { runEnergyBalance(bench, row, albedo); },
                                .method = kMethod,

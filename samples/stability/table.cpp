@@ -1,17 +1,12 @@
 #include "samples/stability/table.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "engine/text.h"
 
 namespace radivox::stability {
 
 namespace {
-
-std::string printNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// A solver's figure, where there is one.
 std::string printFigure(double value) { return value < 0 ? "" : printNumber(value); }
