@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "engine/image/compare.h"
+#include "engine/image/image.h"
 #include "tests/cli/command.h"
 
 namespace radivox::test {
@@ -381,6 +382,57 @@ TEST_F(ReportCommand, SlowInterruptionKeepsWhatWasMeasured) {
   EXPECT_GE(parseCsv(read("out/data.csv")).size(), kept.size());
 }
 
+/// Every file under `folder` is whole, by what its kind ends with, and none is a temporary one.
+void expectWholeFiles(const std::string& folder) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    SCOPED_TRACE(entry.path().string());
+    const std::string kind = entry.path().extension();
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (kind == ".png") {
+      EXPECT_NO_THROW(image::readPng(entry.path()));
+    } else if (kind == ".json") {
+      EXPECT_TRUE(json::accept(text));
+    } else if (kind == ".svg") {
+      EXPECT_NE(text.find("</svg>"), std::string::npos);
+    } else if (kind == ".html") {
+      EXPECT_NE(text.find("</html>"), std::string::npos);
+    } else {
+      EXPECT_TRUE(kind == ".csv" || kind == ".gp" || kind == ".log" || kind == ".state" || kind == ".exr" || kind == ".done") << kind;
+    }
+  }
+}
+
+// A disk that is full at the first file, at a later one, and at the page itself: one error, and no half file.
+TEST_F(ReportCommand, SlowAFullDiskLeavesNoHalfFile) {
+#ifndef RADIVOX_WITH_REFERENCE
+  GTEST_SKIP() << "built without the path tracer";
+#endif
+  writePreset();
+  const std::vector<std::string> limits = {"--time-limit", "5", "--reference-error", "0.2"};
+  CommandSetup setup{.environment = {{"RADIVOX_PIPELINE_CACHE", ""}}};
+  ASSERT_EQ(runRadivox(report(limits), setup).exitCode, 0);
+  const size_t pageBytes = read("out/report.html").size();
+  size_t plotBytes = 0;
+  for (const auto& entry : fs::directory_iterator(path("out/plots"))) plotBytes = std::max<size_t>(plotBytes, entry.file_size());
+  ASSERT_GT(pageBytes, plotBytes);
+  for (const size_t largest : {size_t{100}, plotBytes - 100, pageBytes - 1000}) {
+    SCOPED_TRACE(largest);
+    if (largest == 100) fs::remove_all(path("c"));
+    for (const char* name : {"out/report.html", "out/data.csv", "out/data.json"}) fs::remove(path(name));
+    fs::remove_all(path("out/plots"));
+    setup.largestFile = largest;
+    const CommandResult result = runRadivox(report(limits), setup);
+    EXPECT_TRUE(result.exitCode == 2 || result.exitCode == 3) << result.exitCode << " " << result.err;
+    EXPECT_EQ(result.err.rfind("radivox: ", 0), 0u) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(fs::exists(path("out/report.html")));
+    expectWholeFiles(path("out"));
+    if (fs::exists(path("c"))) expectWholeFiles(path("c"));
+  }
+}
+
 TEST_F(ReportCommand, WhatIsWrongIsSaidBeforeTheWork) {
 #ifndef RADIVOX_WITH_REFERENCE
   GTEST_SKIP() << "built without the path tracer";
@@ -390,6 +442,7 @@ TEST_F(ReportCommand, WhatIsWrongIsSaidBeforeTheWork) {
   expectError({"report", scene}, 2, {"--out"});
   write("file", "");
   expectError({"report", scene, "--out", path("file")}, 2, {"file", "folder"});
+  expectError({"report", scene, "--out", "/proc/report"}, 2, {"/proc/report", "folder"});
   for (const char* limit : {"0", "-3", "soon", "1s", "inf", "nan"}) {
     expectError({"report", scene, "--out", path("out"), "--time-limit", limit}, 2, {"--time-limit", limit});
   }
