@@ -418,9 +418,10 @@ TEST_F(ReportCommand, SlowAFullDiskLeavesNoHalfFile) {
   const size_t pageBytes = read("out/report.html").size();
   size_t plotBytes = 0;
   for (const auto& entry : fs::directory_iterator(path("out/plots"))) plotBytes = std::max<size_t>(plotBytes, entry.file_size());
-  ASSERT_GT(pageBytes, plotBytes);
-  // The reference of the first run serves the others, until the last has to make its own.
-  const std::pair<size_t, const char*> cases[] = {{pageBytes - 1000, "report.html"}, {plotBytes - 100, "plots/"}, {100, ".state"}};
+  ASSERT_GT(pageBytes, plotBytes + 1000);
+  // The reference of the first run serves the others, until the last has to make its own. The table of figures comes before the plots, and
+  // is larger than they are where there was time for many settings.
+  const std::pair<size_t, const char*> cases[] = {{pageBytes - 1000, "report.html"}, {plotBytes - 100, "out/"}, {100, ".state"}};
   for (const auto& [largest, name] : cases) {
     SCOPED_TRACE(largest);
     if (largest == 100) fs::remove_all(path("c"));
