@@ -166,7 +166,7 @@ void addStiffCases(Cases& cases) {
   cases.push_back(
       {.group = "stiff", .name = "rooms without a door", .answer = "the other room is black", .run = [](Bench& bench, Row& row) {
          expectBlack(bench, row, scene::makeBuiltin("two_rooms", {{"door", "0"}}), coarse(48));
-         row.bound = 0.01;
+         row.bound = 0.005;
          row.why = "shadow maps of 128 texels a side: at a wall's edge rays between two texels slip past it";
        }});
 }
