@@ -128,7 +128,10 @@ Plan layOut(const Draft& draft, const std::vector<uint32_t>& order, const std::v
   }
   plan.segmentCount = segments.empty() ? 0 : segments.back() + 1;
   for (uint32_t n = 0; n < draft.declarations.size(); ++n) {
-    if (!draft.culled[n]) continue;
+    if (!draft.culled[n]) {
+      if (!draft.declarations[n].advice().empty()) plan.advice.emplace_back(draft.nodeName(n), draft.declarations[n].advice());
+      continue;
+    }
     plan.culled.push_back({draft.nodeName(n), std::string(draft.graph.nodes()[n].node->type()), draft.culled[n]->reason});
   }
   return plan;

@@ -1,6 +1,7 @@
 #include "engine/graph/left_out.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "engine/graph/plan_print.h"
@@ -23,6 +24,11 @@ std::vector<Absence> listAbsences(const scene::Traits& traits, const scene::Requ
   const char* nothingBounces = traits.whyNothingBounces();
   std::string bounces;
   if (!traits.sky) bounces = !request.wantsIndirect() ? "0 bounces are asked for" : nothingBounces != nullptr ? nothingBounces : "";
+  static constexpr const char* kSole[] = {"the only light is directional", "the only light is a point", "the only light is a spot"};
+  const std::string sole = traits.soleLight() == scene::kManyLights ? "" : kSole[traits.soleLight()];
+  std::string dark;
+  if (traits.darkViewCount > 0)
+    dark = "no face is in " + std::to_string(traits.darkViewCount) + " of " + std::to_string(traits.shadowViewCount) + " views";
   return {{Feature::AlphaMasks, "alpha masks", unless(traits.alphaMasked, "no material has one"),
            "the test of every fragment, shadow texel and piece of surface"},
           {Feature::SingleSides, "single-sided materials", unless(traits.singleSided, "every material is double-sided"),
@@ -34,6 +40,8 @@ std::vector<Absence> listAbsences(const scene::Traits& traits, const scene::Requ
            "sums of emission; closed form and samples in direct light"},
           {Feature::Bounces, "indirect light", bounces, ""},
           {Feature::Matrix, "light between clusters", unless(request.bounces != 1 || traits.emittersByRays, "one bounce is asked for"), ""},
+          {Feature::OtherLights, "other lights", sole, "the loop over lights, and what lights of other kinds do"},
+          {Feature::DarkViews, "shadow maps where no face is", dark, ""},
           {Feature::Readers, "pictures", "nobody asked for them", "their stores"}};
 }
 
@@ -44,19 +52,26 @@ std::set<std::string> nodesOf(const Plan& plan) {
 }
 
 /// What `more` has and `base` has not.
-LeftOut compare(const Plan& base, const Plan& more, const Counts& counts) {
+LeftOut compare(const Plan& base, const Counts& baseCounts, const Plan& more, const Counts& counts) {
   LeftOut entry;
+  const auto bytesOf = [](const PlannedResource& resource, const Counts& known) {
+    return resource.growable ? std::nullopt : detail::shapeBytes(resource.shape, known);
+  };
   const std::set<std::string> nodes = nodesOf(base);
   for (const std::string& name : nodesOf(more)) {
     if (nodes.count(name) == 0) entry.nodes.push_back(name);
   }
-  std::set<std::string> known;
-  for (const PlannedResource& resource : base.resources) known.insert(resource.name);
+  std::map<std::string, uint64_t> known;  // bytes by name
+  for (const PlannedResource& resource : base.resources) known[resource.name] = bytesOf(resource, baseCounts).value_or(0);
   for (const PlannedResource& resource : more.resources) {
-    if (resource.imported || known.count(resource.name) != 0) continue;
+    if (resource.imported) continue;
+    const auto bytes = bytesOf(resource, counts);
+    if (const auto there = known.find(resource.name); there != known.end()) {  // no larger, or larger
+      entry.bytes += std::max(bytes.value_or(0), there->second) - there->second;
+      continue;
+    }
     if (std::find(entry.nodes.begin(), entry.nodes.end(), resource.name.substr(0, resource.name.find('.'))) == entry.nodes.end())
       entry.resources.push_back(resource.name);
-    const auto bytes = resource.growable ? std::nullopt : detail::shapeBytes(resource.shape, counts);
     entry.bytes += bytes.value_or(0);
     entry.open |= !bytes;
   }
@@ -78,12 +93,18 @@ std::vector<LeftOut> listLeftOut(const Graph& graph, const CompileInput& input, 
   for (const Absence& absence : listAbsences(traits, input.request)) {
     if (absence.why.empty() || traits.keeps(absence.feature)) continue;
     traits.kept = input.traits.kept | 1u << static_cast<uint32_t>(absence.feature);
-    LeftOut entry = compare(base, compile(graph, {traits, input.request, input.capabilities, input.imports, input.knownCounts}), counts);
+    Counts keptCounts = counts;
+    if (absence.feature == Feature::DarkViews) {
+      keptCounts["shadow_resolution"] = traits.wholeShadowSide;
+      keptCounts["shadow_layers"] = traits.wholeShadowLayers;
+    }
+    LeftOut entry =
+        compare(base, counts, compile(graph, {traits, input.request, input.capabilities, input.imports, input.knownCounts}), keptCounts);
     traits.kept = input.traits.kept;
     entry.what = absence.what;
     entry.why = absence.why;
     entry.shaders = absence.shaders;
-    if (!entry.nodes.empty() || !entry.resources.empty() || !entry.shaders.empty()) list.push_back(std::move(entry));
+    if (!entry.nodes.empty() || entry.bytes > 0 || entry.open || !entry.shaders.empty()) list.push_back(std::move(entry));
   }
   compile(graph, input);  // nodes remember what they declared last
   return list;

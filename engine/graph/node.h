@@ -85,6 +85,8 @@ class Declaration {
   void runEveryFrame() { everyFrame_ = true; }
   /// The node has nothing to do here; its outputs do not exist. `reason` is printed in the plan.
   void leaveOut(std::string reason) { leftOut_ = std::move(reason); }
+  /// What a person may want to change, since it would give nearly the same for less; the plan prints it, nothing acts on it.
+  void advise(std::string advice) { advice_ = std::move(advice); }
 
   std::deque<Port> ports;  ///< not a vector: what read() and write() return stays good when more ports follow
   struct PublishedCount {
@@ -95,11 +97,12 @@ class Declaration {
   bool isHostPaced() const { return hostPaced_; }
   bool runsEveryFrame() const { return everyFrame_; }
   const std::string& leftOut() const { return leftOut_; }
+  const std::string& advice() const { return advice_; }
 
  private:
   bool hostPaced_ = false;
   bool everyFrame_ = false;
-  std::string leftOut_;
+  std::string leftOut_, advice_;
 };
 
 /// What a node sees while it prepares pipelines: the device, and which optional ports are there.

@@ -70,7 +70,8 @@ struct Plan {
   std::vector<PlannedStep> steps;  ///< in order
   std::vector<PlannedResource> resources;
   std::vector<CulledNode> culled;
-  std::vector<std::string> nodeNames;  ///< of Graph::nodes()
+  std::vector<std::pair<std::string, std::string>> advice;  ///< node, what it advises (Declaration::advise)
+  std::vector<std::string> nodeNames;                       ///< of Graph::nodes()
   uint32_t segmentCount = 0;
 
   const PlannedPort* findPort(std::string_view node, std::string_view port) const;

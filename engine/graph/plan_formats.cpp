@@ -104,6 +104,8 @@ std::string Plan::printJson(const Counts& counts) const {
   }
   json["left_out"] = Json::array();
   for (const CulledNode& node : culled) json["left_out"].push_back({{"node", node.name}, {"type", node.type}, {"reason", node.reason}});
+  json["advice"] = Json::array();
+  for (const auto& [node, words] : advice) json["advice"].push_back({{"node", node}, {"advice", words}});
   const Totals sums = totals(*this, counts);
   json["memory"] = {{"complete", !sums.open},  {"kept", sums.kept},
                     {"scratch", sums.scratch}, {"scratch_unshared", sums.scratchUnshared},

@@ -183,6 +183,9 @@ std::string Plan::printText(const Counts& counts) const {
   if (!culled.empty()) text += "left out\n";
   for (const CulledNode& node : culled) text += "  " + node.name + " (" + node.type + "): " + node.reason + "\n";
 
+  if (!advice.empty()) text += "advice\n";
+  for (const auto& [node, words] : advice) text += "  " + node + ": " + words + "\n";
+
   const auto slots = slotMembers(*this);
   if (!slots.empty()) text += "shared scratch memory\n";
   for (const auto& [slot, members] : slots) {

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "engine/text.h"
 
 namespace radivox::params {
 namespace {
@@ -21,9 +22,7 @@ std::string printLimit(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) {
     return std::to_string(static_cast<long long>(value));
   }
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
+  return printNumber(value);
 }
 
 std::string describeAllowed(const Param& param) {

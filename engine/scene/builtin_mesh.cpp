@@ -7,18 +7,9 @@
 
 #include "engine/error.h"
 #include "engine/params/params.h"
+#include "engine/text.h"
 
 namespace radivox::scene {
-
-namespace {
-
-std::string printNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
-}  // namespace
 
 double BuiltinParameters::number(const std::string& name, double fallback, double min, double max) {
   known_.push_back(name);

@@ -17,6 +17,9 @@ struct LightOptions {
   uint64_t maxShadowBytes = 512ull << 20;
   uint32_t maxShadowSide = 4096;  ///< GpuScene lowers these two to the device's limits
   uint32_t maxShadowLayers = 256;
+  /// Lights neither move nor change: views that no face is in get no texels, and lights whose range ends before the nearest face are none.
+  bool fixed = false;
+  uint32_t kept = 0;  ///< Traits::kept
 };
 
 /// Imports (names as in the plan):
@@ -61,10 +64,12 @@ struct LightSetup {
   std::vector<shared::Light> lights;
   std::vector<shared::ShadowView> views;
   std::vector<shared::EmissiveTriangle> emissive;
-  uint32_t shadowResolution = 1;    ///< texels a side of every layer; views are tiles of layers
-  uint32_t shadowLayers = 1;        ///< at least 1, so that an image can always be made
-  uint32_t emitterSampleCount = 0;  ///< 0 with emissive triangles: emitters light through rays
-  std::vector<std::string> notes;   ///< what had to be lowered to fit, one line each
+  uint32_t shadowResolution = 1;                        ///< texels a side of every layer; views are tiles of layers
+  uint32_t shadowLayers = 1;                            ///< at least 1, so that an image can always be made
+  uint32_t emitterSampleCount = 0;                      ///< 0 with emissive triangles: emitters light through rays
+  uint32_t darkViewCount = 0;                           ///< views without texels, since no face is in them
+  uint32_t wholeShadowSide = 1, wholeShadowLayers = 1;  ///< with texels for those, too
+  std::vector<std::string> notes;                       ///< what had to be lowered to fit, one line each
 };
 /// imports() and counts() of a GpuScene with a camera of this size, without a device: for printing plans.
 struct SceneShapes {
@@ -73,7 +78,7 @@ struct SceneShapes {
 };
 SceneShapes describeShapes(const Scene& scene, const LightOptions& options, uint32_t width, uint32_t height);
 
-/// Scene::traits() with emittersByRays as these options have it.
+/// Scene::traits() with emittersByRays, what no light reaches, and what is kept, as these options have it.
 Traits traitsFor(const Scene& scene, const LightOptions& options);
 LightSetup setUpLights(const Scene& scene, const LightOptions& options);
 

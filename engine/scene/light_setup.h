@@ -25,6 +25,12 @@ uint32_t packTiles(std::vector<shared::ShadowView>& views, uint32_t side);
 /// A side that holds the largest tile and few layers, a power of two unless a tile asks for more.
 uint32_t chooseLayerSide(const std::vector<shared::ShadowView>& views, uint32_t maxSide);
 
+/// Does the light's range end before the scene's bounds?
+bool endsBefore(const Traits& traits, const shared::Light& light);
+/// Which views no triangle is in, or whose light ends before the nearest: what they would hold is nothing, or nothing that is looked up.
+std::vector<bool> findDarkViews(const Scene& scene, const Traits& traits, const std::vector<shared::Light>& lights,
+                                const std::vector<shared::ShadowView>& views);
+
 /// A square view along `forward`; `tangent` of half its angle. `up` is square to `forward`.
 shared::ShadowView makePerspectiveView(const glm::dvec3& position, const glm::dvec3& forward, const glm::dvec3& up, double tangent,
                                        double znear, uint32_t resolution);

@@ -102,17 +102,33 @@ bool halveLargestClass(const std::vector<shared::Light>& lights, ViewResolutions
                                           " texels a side; " + std::to_string(lo) + " of them fit: remove lights or raise the limit");
 }
 
-}  // namespace
-
-Traits traitsFor(const Scene& scene, const LightOptions& options) {
+Traits traitsOfScene(const Scene& scene, const LightOptions& options) {
   Traits traits = scene.traits();
   if (traits.emissiveTriangleCount > 0 && options.emitterSamples == 0) traits.emittersByRays = true;
+  traits.kept = options.kept;
   return traits;
 }
 
+/// Views that no face is in get no texels, but stay in the list: a point that lies in one finds it, and nothing there.
+void leaveOutDarkViews(const Scene& scene, const Traits& traits, const LightOptions& options, LightSetup& setup) {
+  setup.wholeShadowSide = setup.shadowResolution;
+  setup.wholeShadowLayers = setup.shadowLayers;
+  if (!options.fixed || setup.views.empty()) return;
+  const std::vector<bool> dark = findDarkViews(scene, traits, setup.lights, setup.views);
+  setup.darkViewCount = static_cast<uint32_t>(std::count(dark.begin(), dark.end(), true));
+  if (setup.darkViewCount == 0 || traits.keeps(Feature::DarkViews)) return;
+  for (size_t i = 0; i < setup.views.size(); ++i) {
+    if (dark[i]) setup.views[i].resolution = 0;
+  }
+  setup.shadowResolution = chooseLayerSide(setup.views, options.maxShadowSide);
+  setup.shadowLayers = packTiles(setup.views, setup.shadowResolution);
+}
+
+}  // namespace
+
 LightSetup setUpLights(const Scene& scene, const LightOptions& options) {
   LightSetup setup;
-  const Traits traits = traitsFor(scene, options);
+  const Traits traits = traitsOfScene(scene, options);
   setup.emissive = listEmitters(scene);
   const auto atLeast = [&](uint32_t resolution) { return std::clamp(resolution, 2u, std::max(2u, options.maxShadowSide)); };
   Plan plan{{atLeast(options.shadowResolution), atLeast(options.shadowResolution), atLeast(options.pointShadowResolution),
@@ -149,7 +165,22 @@ LightSetup setUpLights(const Scene& scene, const LightOptions& options) {
     setup.shadowResolution = chooseLayerSide(setup.views, options.maxShadowSide);
     setup.shadowLayers = packTiles(setup.views, setup.shadowResolution);
   }
+  leaveOutDarkViews(scene, traits, options, setup);
   return setup;
+}
+
+Traits traitsFor(const Scene& scene, const LightOptions& options) {
+  Traits traits = traitsOfScene(scene, options);
+  if (!options.fixed) return traits;
+  for (const PunctualLight& light : scene.lights) {
+    if (light.intensity == glm::vec3(0.f) || endsBefore(traits, toLight(light))) ++traits.unreachingLightCount;
+  }
+  const LightSetup setup = setUpLights(scene, options);
+  traits.shadowViewCount = static_cast<uint32_t>(setup.views.size());
+  traits.darkViewCount = setup.darkViewCount;
+  traits.wholeShadowSide = setup.wholeShadowSide;
+  traits.wholeShadowLayers = setup.wholeShadowLayers;
+  return traits;
 }
 
 }  // namespace radivox::scene

@@ -82,6 +82,11 @@ Traits Scene::traits() const {
   for (size_t i = 0; i < triangleMaterials.size(); ++i) {
     const double area = glm::length(areaVector(*this, i)) * 0.5;
     t.surfaceArea += area;
+    for (size_t k = 0; area > 0 && k < 3; ++k) {
+      const glm::dvec3 from(vertices[indices[3 * i + k]].position), to(vertices[indices[3 * i + (k + 1) % 3]].position);
+      const double edge = glm::distance(from, to);
+      if (t.shortestEdge == 0 || edge < t.shortestEdge) t.shortestEdge = edge;
+    }
     if ((materials[triangleMaterials[i]].flags & shared::kMaterialEmissive) == 0u) continue;
     t.emissiveArea += area;
     ++t.emissiveTriangleCount;

@@ -82,7 +82,8 @@ void Direct::prepare(graph::PrepareContext& context) {
                                                                    {1, shadowed},
                                                                    {2, static_cast<uint32_t>(emitters_)},
                                                                    {3, context.traits().hasAlphaMasks()},
-                                                                   {4, edges_ == Edges::Exact && context.traits().hasPunctualLights()}}});
+                                                                   {4, edges_ == Edges::Exact && context.traits().hasPunctualLights()},
+                                                                   {5, context.traits().soleLight()}}});
 }
 
 void Direct::record(graph::RecordContext& context) {

@@ -63,7 +63,7 @@ void ShadowMap::record(graph::RecordContext& context) {
   assert((views != nullptr || viewCount == 0) && "scene.shadow_views must be host visible");
 
   const VkExtent2D extent{depth.info().width, depth.info().height};
-  uint32_t texelCount = 0;
+  uint32_t texelCount = 0, drawn = 0;
   for (uint32_t layer = 0; layer < depth.info().layers; ++layer) {
     const gpu::Commands::Attachment color[] = {{&triangle, layer, true, {}}};
     const gpu::Commands::Attachment far{&depth, layer, true, {}};
@@ -71,8 +71,9 @@ void ShadowMap::record(graph::RecordContext& context) {
     commands.bind(pipeline_, {context.buffer("scene.vertices"), context.buffer("scene.indices"), context.buffer("scene.triangle_materials"),
                               context.buffer("scene.materials"), context.buffer("scene.textures"), viewBuffer});
     for (uint32_t view = 0; view < viewCount; ++view) {
-      if (views[view].layer != layer) continue;
       const uint32_t side = views[view].resolution;
+      if (views[view].layer != layer || side == 0) continue;
+      ++drawn;
       texelCount += side * side;
       commands.setViewport(static_cast<int32_t>(views[view].offsetX), static_cast<int32_t>(views[view].offsetY), side, side);
       commands.push(view);
@@ -80,7 +81,7 @@ void ShadowMap::record(graph::RecordContext& context) {
     }
     commands.endRendering();
   }
-  context.reportStat("views", viewCount);
+  context.reportStat("views", drawn);
   context.reportStat("texels", texelCount);
 }
 

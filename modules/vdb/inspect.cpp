@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
+#include "engine/text.h"
 #include "modules/vdb/reader.h"
 
 namespace radivox::vdb {
 
 namespace {
-
-std::string printNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 double lengthOf(float v) { return std::abs(static_cast<double>(v)); }
 double lengthOf(double v) { return std::abs(v); }

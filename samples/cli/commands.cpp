@@ -40,8 +40,7 @@ int runGraph(const Options& options) {
   scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   const gpu::Capabilities capabilities = findCapabilities(deviceIndex);
   const scene::SceneShapes shapes = scene::describeShapes(scene, job.lights, job.request.width, job.request.height);
-  scene::Traits traits = scene::traitsFor(scene, job.lights);
-  if (options.keepAll) traits.kept = scene::kKeepAll;
+  const scene::Traits traits = scene::traitsFor(scene, job.lights);
   const graph::CompileInput input{traits, job.request, capabilities, shapes.imports, shapes.counts};
   const std::vector<graph::LeftOut> leftOut = graph::listLeftOut(job.graph, input, shapes.counts);
   const graph::Plan plan = graph::compile(job.graph, input);

@@ -1,18 +1,8 @@
 #include "samples/cli/describe.h"
 
-#include <cstdio>
+#include "engine/text.h"
 
 namespace radivox::cli {
-
-namespace {
-
-std::string printNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
-}  // namespace
 
 std::string printAllowed(const params::Param& param) {
   std::string allowed;

@@ -134,6 +134,8 @@ void prepareJob(const Options& options, bool wantsDisplay, Job& job) {
   const std::vector<std::string> aovNames = parseList("--aov", options.aovs);
   job.request.aovs = {aovNames.begin(), aovNames.end()};
   job.lightParams = lightTable(job.lights);
+  job.lights.fixed = true;
+  job.lights.kept = options.keepAll ? scene::kKeepAll : 0;
   fillRegistry(options, job.registry);
 
   std::vector<Source> presets;

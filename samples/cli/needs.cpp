@@ -76,6 +76,7 @@ int runNeeds(const Options& options, const std::vector<std::string>& scenes, con
     one.scene = name;
     Job job, keptJob;  // nodes belong to one plan
     prepareJob(one, false, job);
+    one.keepAll = true;
     prepareJob(one, false, keptJob);
     const scene::Scene scene = scene::loadScene(name);
     const scene::CameraDescription& camera = scene::findCamera(scene, one.camera.empty() ? "0" : one.camera);
@@ -88,9 +89,7 @@ int runNeeds(const Options& options, const std::vector<std::string>& scenes, con
         notNeeded += (notNeeded.empty() ? "" : ", ") + entry.what;
     }
     Candidate needed(*device, job, scene, camera, traits);
-    scene::Traits keptTraits = traits;
-    keptTraits.kept = scene::kKeepAll;
-    Candidate all(*device, keptJob, scene, camera, keptTraits);
+    Candidate all(*device, keptJob, scene, camera, scene::traitsFor(scene, keptJob.lights));
     // In turn, so that what else the machine does meets both.
     for (uint32_t run = 0; run < runs; ++run) {
       needed.render();

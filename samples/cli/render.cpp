@@ -140,8 +140,7 @@ int runRender(const Options& options) {
   gpuScene.setCamera(camera, job.request.width, job.request.height);
   record.notes = gpuScene.notes();
   printWarnings(record.notes);
-  scene::Traits traits = scene::traitsFor(scene, job.lights);
-  if (options.keepAll) traits.kept = scene::kKeepAll;
+  const scene::Traits traits = scene::traitsFor(scene, job.lights);
   graph::Plan plan = graph::compile(job.graph, {traits, job.request, device->capabilities(), gpuScene.imports(), gpuScene.counts()});
   stopIfInterrupted();
   graph::Executor executor(*device, job.graph, std::move(plan), traits, job.request, gpuScene.counts());

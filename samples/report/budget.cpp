@@ -1,13 +1,13 @@
 #include "samples/report/budget.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/error.h"
+#include "engine/text.h"
 #include "samples/cli/cache.h"
 #include "samples/cli/progress.h"
 #include "samples/report/content_key.h"
@@ -26,14 +26,8 @@ constexpr const char* kResolution = "voxelize.resolution";
 /// A setting takes about this much longer to measure than its picture takes to make.
 constexpr double kMeasureFactor = 3;
 
-std::string print(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string describe(const Row& row) {
-  return row.setting.print() + ": error " + print(row.full.relRmse) + ", " + print(row.cost.totalMs()) + " ms";
+  return row.setting.print() + ": error " + printNumber(row.full.relRmse, 3) + ", " + printNumber(row.cost.totalMs(), 3) + " ms";
 }
 
 class Calibration {
@@ -75,7 +69,8 @@ class Calibration {
     refine(bench);
     const Row* chosen = best();
     if (chosen == nullptr) refuse(truth);
-    const std::string tried = std::to_string(rows_.size()) + " settings measured; noise of the reference " + print(truth.floorFull);
+    const std::string tried =
+        std::to_string(rows_.size()) + " settings measured; noise of the reference " + printNumber(truth.floorFull, 3);
     image::writeFileAtomically(path, nlohmann::ordered_json{{"row", toJson(*chosen)}, {"tried", tried}}.dump(1) + "\n");
     return {optionsOf(*chosen), describe(*chosen) + " (" + tried + ")"};
   }
@@ -97,7 +92,7 @@ class Calibration {
   /// Of this budget: asked again, it gets the same answer at once.
   std::string choicePath() const {
     ContentKey key;
-    key.add(sceneKey_).add(options_.aovs).add(print(budget_.maxError.value_or(0))).add(print(budget_.milliseconds.value_or(0)));
+    key.add(sceneKey_).add(options_.aovs).add(printNumber(budget_.maxError.value_or(0))).add(printNumber(budget_.milliseconds.value_or(0)));
     for (const Method& method : methods_) key.add(method.graph).add(method.preset).add(method.bounces);
     for (const std::string& set : options_.sets) key.add(set);
     return folder_ + "/choice_" + key.print() + ".json";
@@ -247,13 +242,13 @@ class Calibration {
     const std::string found = row == nullptr ? "nothing could be measured" : "nearest was " + describe(*row);
     std::string asked, mend;
     if (budget_.maxError) {
-      asked = "--max-error " + print(*budget_.maxError);
+      asked = "--max-error " + printNumber(*budget_.maxError, 3);
       mend = truth.floorFull > *budget_.maxError
-                 ? "; the reference's own noise is " + print(truth.floorFull) + ", give more --calibration-time"
+                 ? "; the reference's own noise is " + printNumber(truth.floorFull, 3) + ", give more --calibration-time"
                  : "; allow more error, or more --calibration-time";
     }
     if (budget_.milliseconds) {
-      asked += std::string(asked.empty() ? "" : " with ") + "--budget-ms " + print(*budget_.milliseconds);
+      asked += std::string(asked.empty() ? "" : " with ") + "--budget-ms " + printNumber(*budget_.milliseconds, 3);
       if (mend.empty()) mend = "; allow more time, or a smaller --size";
     }
     throw Error(ErrorCode::Unsupported, asked + ": no setting keeps it here; " + found + mend);

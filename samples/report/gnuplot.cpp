@@ -65,6 +65,7 @@ std::string runGnuplot(const std::string& folder, const std::string& name, int w
   std::string svg = slurp(folder + "/" + name + ".svg");
   const size_t begin = svg.find("<svg");
   if (code != 0 || begin == std::string::npos || svg.find("</svg>") == std::string::npos) {
+    std::filesystem::remove(folder + "/" + name + ".svg", ignored);  // half of one
     throw Error(ErrorCode::Unsupported,
                 "gnuplot could not draw '" + folder + "/" + name + ".gp'; its messages are in " + name + ".log beside it");
   }

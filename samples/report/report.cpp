@@ -2,7 +2,6 @@
 #include "samples/report/options.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <thread>
 
 #include "engine/error.h"
+#include "engine/text.h"
 #include "samples/cli/cache.h"
 #include "samples/report/content_key.h"
 #include "samples/report/gnuplot.h"
@@ -27,9 +27,7 @@ double parseNumber(const std::string& option, const std::string& text, double le
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != 0 || !std::isfinite(value) || value < least) {
-    char allowed[32];
-    std::snprintf(allowed, sizeof allowed, "%g", least);
-    throw Error(ErrorCode::BadInput, option + " '" + text + "': give a number of at least " + allowed);
+    throw Error(ErrorCode::BadInput, option + " '" + text + "': give a number of at least " + printNumber(least));
   }
   return value;
 }

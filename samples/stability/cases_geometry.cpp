@@ -215,17 +215,19 @@ void addTriangleCases(Cases& cases) {
                    .name = "a fan of 20000 needles",
                    .answer = "the picture of a floor of two triangles",
                    .run = compare(plainFloor, fanFloor, 2e-3)});
-  cases.push_back({.group = "extreme",
-                   .name = "1000 triangles of 1e-12 m^2",
-                   .answer = "the picture without them",
-                   .run = compare([] { return litRoom(); }, [] { return withSpeck(litRoom(), 1000, 1.4e-6); }, 2e-2)});
+  cases.push_back(
+      {.group = "extreme", .name = "1000 triangles of 1e-12 m^2", .answer = "the picture without them", .run = [](Bench& bench, Row& row) {
+         compareScenes(bench, row, litRoom(), withSpeck(litRoom(), 1000, 1.4e-6), coarse(), bench.tolerance(1e-2));
+         row.bound = 0.03;
+         row.why = "where surface ends is known to a sixteenth of a voxel: rays are stopped by specks as if they were that large";
+       }});
   const std::pair<const char*, scene::Scene (*)()> copies[] = {{"every triangle twice", repeated},
                                                                {"every surface twice, cut differently", [] { return doubled(litRoom()); }}};
   for (const auto& [name, make] : copies) {
     cases.push_back(
         {.group = "extreme", .name = name, .answer = "the picture with each once", .run = [make = make](Bench& bench, Row& row) {
            compareScenes(bench, row, litRoom(), make(), coarse(), bench.tolerance(1e-2));
-           row.bound = 0.1;
+           row.bound = 0.03;
            row.why = "voxels that surface fills in part only count both sheets: their light is halved";
          }});
   }

@@ -1,9 +1,9 @@
 // Stiff: light that takes long to settle, or passes through next to nothing.
 #include <cmath>
-#include <cstdio>
 #include <glm/gtc/constants.hpp>
 
 #include "engine/scene/builtin.h"
+#include "engine/text.h"
 #include "samples/stability/cases.h"
 #include "samples/stability/scenes.h"
 
@@ -11,17 +11,11 @@ namespace radivox::stability {
 
 namespace {
 
-std::string print(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 /// Every wall emits (1 − ρ)/π: B = 1, and ρ of it has been reflected before.
 void runFurnace(Bench& bench, Row& row, double albedo) {
   RenderOptions options = coarse(16);
   options.settings.push_back({"bounce.residual", "1e-7"});
-  const auto render = bench.render(scene::makeBuiltin("furnace", {{"albedo", print(albedo)}}), options);
+  const auto render = bench.render(scene::makeBuiltin("furnace", {{"albedo", printNumber(albedo)}}), options);
   const auto values = render->surfaceValues("irradiance_indirect");
   row.judge(albedo, meanOf(values), bench.tolerance(2e-4));
   // Noise averages out of the mean only; what is exact is exact in every pixel.
@@ -127,14 +121,14 @@ void expectBlack(Bench& bench, Row& row, scene::Scene scene, RenderOptions optio
   row.judge(0, largestFrom(values, 0), tolerance);
   if (values.empty()) row.error = 1e30;  // nothing was seen: no case
   if (row.error > tolerance)
-    row.note = render->describeWorst("color", 0) + "; direct at most " + print(largestFrom(render->surfaceValues("direct"), 0)) +
-               ", indirect " + print(largestFrom(render->surfaceValues("indirect"), 0));
+    row.note = render->describeWorst("color", 0) + "; direct at most " + printNumber(largestFrom(render->surfaceValues("direct"), 0)) +
+               ", indirect " + printNumber(largestFrom(render->surfaceValues("indirect"), 0));
 }
 
 void addStiffCases(Cases& cases) {
   for (const double albedo : {0.0, 0.5, 0.9, 0.99, 0.999}) {
     cases.push_back({.group = "stiff",
-                     .name = "furnace, albedo " + print(albedo),
+                     .name = "furnace, albedo " + printNumber(albedo),
                      .answer = "E_indirect = albedo in every pixel of a closed box that emits (1 - albedo)/pi",
                      .run = [albedo](Bench& bench, Row& row) { runFurnace(bench, row, albedo); },
                      .fast = albedo == 0.9});
@@ -172,7 +166,7 @@ void addStiffCases(Cases& cases) {
   cases.push_back(
       {.group = "stiff", .name = "rooms without a door", .answer = "the other room is black", .run = [](Bench& bench, Row& row) {
          expectBlack(bench, row, scene::makeBuiltin("two_rooms", {{"door", "0"}}), coarse(48));
-         row.bound = 0.01;
+         row.bound = 0.005;
          row.why = "shadow maps of 128 texels a side: at a wall's edge rays between two texels slip past it";
        }});
 }

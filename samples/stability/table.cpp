@@ -1,17 +1,12 @@
 #include "samples/stability/table.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "engine/text.h"
 
 namespace radivox::stability {
 
 namespace {
-
-std::string printNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// A solver's figure, where there is one.
 std::string printFigure(double value) { return value < 0 ? "" : printNumber(value); }
@@ -42,12 +37,14 @@ std::string printRow(const TableRow& r) {
   if (!r.row.note.empty()) remark += (remark.empty() ? "" : "; ") + r.row.note;
   const bool measured = r.row.verdict != Verdict::Skipped && r.row.verdict != Verdict::Refused;
   const auto cell = [](const std::string& text) { return "<td>" + text + "</td>"; };
-  const auto number = [&](double value) { return cell(measured ? printNumber(value) : ""); };
+  // Four digits are what a person reads; the table has them all.
+  const auto number = [&](double value) { return cell(measured ? printNumber(value, 4) : ""); };
+  const auto figure = [&](double value) { return cell(value < 0 ? "" : printNumber(value, 4)); };
   const std::string verdict = printVerdict(r.row.verdict);
   return "<tr class=\"" + verdict + "\"><td class=\"text\">" + escape(r.group) + "</td><td class=\"text\">" + escape(r.name) +
          "</td><td class=\"text soft\">" + escape(r.answer) + "</td>" + number(r.row.expected) + number(r.row.result) +
-         number(r.row.error) + number(r.row.tolerance) + cell(printFigure(r.row.iterations)) + cell(printFigure(r.row.residual)) +
-         cell(printNumber(r.row.seconds)) + "<td class=\"text verdict\">" + verdict + "</td><td class=\"text soft\">" + escape(remark) +
+         number(r.row.error) + number(r.row.tolerance) + figure(r.row.iterations) + figure(r.row.residual) +
+         cell(printNumber(r.row.seconds, 3)) + "<td class=\"text verdict\">" + verdict + "</td><td class=\"text soft\">" + escape(remark) +
          "</td></tr>\n";
 }
 
@@ -86,7 +83,7 @@ h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 21px; margin: 36px 0 8p
 table { border-collapse: collapse; font-size: 13px; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: right; padding: 3px 8px; border-bottom: 1px solid #eee; vertical-align: top; }
 th { position: sticky; top: 0; background: #f7f7f5; border-bottom: 1px solid #bbb; }
-td.text, th.text { text-align: left; }
+td { white-space: nowrap; } td.text, th.text { text-align: left; white-space: normal; }
 .verdict { font-weight: 600; }
 tr.pass .verdict { color: #00734d; } tr.degraded .verdict { color: #b35c00; } tr.refused .verdict { color: #0060a0; }
 tr.fail td { background: #fbe3dc; } tr.fail .verdict { color: #a00000; } tr.shown .verdict, tr.skipped .verdict { color: #777; }

@@ -70,6 +70,7 @@ Method::Method(gpu::Device& device, const scene::Scene& scene, const View& view,
     for (const graph::Graph::Entry& entry : job_->graph.nodes()) cheapen(entry.node->params(), entry.name, fixed_);
     cheapen(job_->lightParams, "lights", fixed_);
   }
+  job_->lights.fixed = false;  // they are moved while the picture is looked at
   planKey_ = planKey(view);
   gpuScene_ = std::make_unique<scene::GpuScene>(device, scene, job_->lights);
   compile(scene);

@@ -10,6 +10,7 @@ layout(constant_id = 0) const uint kFilter = 1u;        // texels; half width of
 layout(constant_id = 1) const bool kShadowed = true;    // shadow maps are there
 layout(constant_id = 3) const bool kMasked = false;     // some material has an alpha mask
 layout(constant_id = 4) const bool kExactEdges = true;  // there are punctual lights, and their shadows end where triangles end, not texels
+layout(constant_id = 5) const uint kSoleLight = 0xffffffffu;  // the kind of the one light; all ones: there may be more
 // How emitters light: not at all; closed form × visible share of the samples; samples alone; closed form unshadowed; an image of others.
 layout(constant_id = 2) const uint kEmitters = 0u;
 const uint kEmittersNone = 0u, kEmittersShadowed = 1u, kEmittersSamples = 2u, kEmittersUnshadowed = 3u, kEmittersImage = 4u;
@@ -73,8 +74,10 @@ void main() {
   vec3 sampled = vec3(0.0), sampledSeen = vec3(0.0);
   // Where the distance falls below the patch of emitter that a sample stands for, the sample no longer is a point: 1 / (d² + area / π), a disc's.
   float patchArea = info.emissiveArea / float(max(info.emitterSampleCount, 1u));
-  [[dont_unroll]] for (uint i = 0u; i < info.lightCount; ++i) {
+  const bool kSole = kSoleLight != 0xffffffffu;
+  [[dont_unroll]] for (uint i = 0u; i < info.lightCount && !(kSole && i > 0u); ++i) {
     Light light = lights[i];
+    if (kSole) light.type = kSoleLight;
     bool isSample = light.type == kLightEmitterSample;
     if (isSample && !kSampled) continue;
     vec3 unshadowed = lightIrradiance(light, p, n);

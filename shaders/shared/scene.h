@@ -71,7 +71,7 @@ struct ShadowView {
   vec3 origin;           // light position; directional: unused
   uint light;
   float texelFlux;       // directional: texel area in m²; others: texel area on the plane at distance 1 m (for solid angles)
-  uint resolution;       // texels a side
+  uint resolution;       // texels a side; 0: no face is in the view, and it has no tile
   uint layer;
   uint offsetX;          // texels, of the tile's top left corner in the layer
   uint offsetY;

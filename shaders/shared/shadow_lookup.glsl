@@ -95,6 +95,8 @@ const uint kFar = 3u;      // an occluder high above the plane
 
 // What texel `at` of the tile says about p; id, occluder: its triangle and point, unless kLit.
 uint classifyTexel(Lookup l, ivec2 at, vec3 p, vec3 g, uint own, float nearHeight, out uint id, out vec3 occluder) {
+  id = 0u;
+  if (l.resolution == 0) return kLit;  // a view that no face is in has no texels
   at = clamp(at, ivec2(0), ivec2(l.resolution - 1));
   ivec3 where = ivec3(at + l.tile.xy, l.tile.z);
   id = texelFetch(shadowTriangle, where, 0).x;

@@ -1,6 +1,7 @@
 // radivox report on a small scene: its figures are read back and held against each other, the pictures, and what other commands say.
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "engine/image/compare.h"
+#include "engine/image/image.h"
 #include "tests/cli/command.h"
 
 namespace radivox::test {
@@ -381,6 +383,62 @@ TEST_F(ReportCommand, SlowInterruptionKeepsWhatWasMeasured) {
   EXPECT_GE(parseCsv(read("out/data.csv")).size(), kept.size());
 }
 
+/// Every file under `folder` is whole, by what its kind ends with, and none is a temporary one.
+void expectWholeFiles(const std::string& folder) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    SCOPED_TRACE(entry.path().string());
+    const std::string kind = entry.path().extension();
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (kind == ".png") {
+      EXPECT_NO_THROW(image::readPng(entry.path()));
+    } else if (kind == ".json") {
+      EXPECT_TRUE(json::accept(text));
+    } else if (kind == ".svg") {
+      EXPECT_NE(text.find("</svg>"), std::string::npos);
+    } else if (kind == ".html") {
+      EXPECT_NE(text.find("</html>"), std::string::npos);
+    } else {
+      EXPECT_TRUE(kind == ".csv" || kind == ".gp" || kind == ".log" || kind == ".state" || kind == ".exr" || kind == ".done") << kind;
+    }
+  }
+}
+
+// A disk that is full at the page, at a plot, and at the first file: one error, and no half file.
+TEST_F(ReportCommand, SlowAFullDiskLeavesNoHalfFile) {
+#ifndef RADIVOX_WITH_REFERENCE
+  GTEST_SKIP() << "built without the path tracer";
+#endif
+  writePreset();
+  std::vector<std::string> words = report({"--time-limit", "5", "--reference-error", "0.2"});
+  std::replace(words.begin(), words.end(), std::string("48x32"), std::string("16x12"));  // plots are larger than pictures
+  CommandSetup setup{.environment = {{"RADIVOX_PIPELINE_CACHE", ""}}};
+  ASSERT_EQ(runRadivox(words, setup).exitCode, 0);
+  const size_t pageBytes = read("out/report.html").size();
+  size_t plotBytes = 0;
+  for (const auto& entry : fs::directory_iterator(path("out/plots"))) plotBytes = std::max<size_t>(plotBytes, entry.file_size());
+  ASSERT_GT(pageBytes, plotBytes + 1000);
+  // The reference of the first run serves the others, until the last has to make its own. The table of figures comes before the plots, and
+  // is larger than they are where there was time for many settings.
+  const std::pair<size_t, const char*> cases[] = {{pageBytes - 1000, "report.html"}, {plotBytes - 100, "out/"}, {100, ".state"}};
+  for (const auto& [largest, name] : cases) {
+    SCOPED_TRACE(largest);
+    if (largest == 100) fs::remove_all(path("c"));
+    for (const char* file : {"out/report.html", "out/data.csv", "out/data.json"}) fs::remove(path(file));
+    fs::remove_all(path("out/plots"));
+    setup.largestFile = largest;
+    const CommandResult result = runRadivox(words, setup);
+    EXPECT_TRUE(result.exitCode == 2 || result.exitCode == 3) << result.exitCode << " " << result.err;
+    EXPECT_EQ(result.err.rfind("radivox: ", 0), 0u) << result.err;
+    EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(fs::exists(path("out/report.html")));
+    expectWholeFiles(path("out"));
+    if (fs::exists(path("c"))) expectWholeFiles(path("c"));
+  }
+}
+
 TEST_F(ReportCommand, WhatIsWrongIsSaidBeforeTheWork) {
 #ifndef RADIVOX_WITH_REFERENCE
   GTEST_SKIP() << "built without the path tracer";
@@ -390,6 +448,7 @@ TEST_F(ReportCommand, WhatIsWrongIsSaidBeforeTheWork) {
   expectError({"report", scene}, 2, {"--out"});
   write("file", "");
   expectError({"report", scene, "--out", path("file")}, 2, {"file", "folder"});
+  expectError({"report", scene, "--out", "/proc/report"}, 2, {"/proc/report", "folder"});
   for (const char* limit : {"0", "-3", "soon", "1s", "inf", "nan"}) {
     expectError({"report", scene, "--out", path("out"), "--time-limit", limit}, 2, {"--time-limit", limit});
   }

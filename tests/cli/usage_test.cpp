@@ -87,6 +87,17 @@ TEST_F(Usage, FilesThatCannotBeWrittenAreRefusedBeforeTheWork) {
   expectError({"render", scene, "--out", path("a.jpg")}, 2, {"a.jpg", ".exr", ".png"});
   expectError({"render", scene, "--out", path("a")}, 2, {".exr"});
   expectError({"render", scene, "--out", "/proc/a.exr"}, 2, {"/proc"});
+  expectError({"scene", "box", "--out", "/proc/a.glb"}, 2, {"/proc"});
+  expectError({"stability", "--out", "/proc/a"}, 2, {"/proc/a"});
+#ifdef RADIVOX_WITH_REFERENCE
+  expectError({"reference", scene, "--out", "/proc/a.exr"}, 2, {"/proc"});
+  expectError({"reference", scene, "--out", path("no/folder/a.exr")}, 2, {"no/folder", "does not exist"});
+  expectError({"reference", scene, "--out", path("a.exr"), "--checkpoint", "/proc/a.state"}, 2, {"/proc"});
+#endif
+#ifdef RADIVOX_WITH_VDB
+  expectError({"vdb", scene, "--out", "/proc/a.vdb"}, 2, {"/proc"});
+  expectError({"vdb", scene, "--out", path("no/folder/a.vdb")}, 2, {"no/folder", "does not exist"});
+#endif
   expectError({"render", scene, "--out", path("a.png"), "--aov", "color,albedo"}, 2, {"a.png", ".exr"});
   expectError({"render", scene, "--out", path("a.exr"), "--stats", path("no/a.json")}, 2, {"does not exist"});
   expectError({"render", scene, "--out", path("a.exr"), "--stats", path("a.txt")}, 2, {"a.txt", ".json"});

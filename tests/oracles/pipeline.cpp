@@ -31,13 +31,14 @@ Pipeline::Pipeline(gpu::Device& device, scene::Scene scene_, const PipelineOptio
   graph->clearOutputs();
   for (const std::string& output : options.outputs) graph->output(output);
 
-  traits_ = scene::traitsFor(scene, options.lights);
-  traits_.kept = options.kept;
+  scene::LightOptions lights = options.lights;
+  lights.kept = options.kept;
+  traits_ = scene::traitsFor(scene, lights);
   request_.width = options.width;
   request_.height = options.height;
   request_.bounces = options.bounces;
   request_.aovs = options.aovs;
-  gpuScene = std::make_unique<scene::GpuScene>(device, scene, options.lights);
+  gpuScene = std::make_unique<scene::GpuScene>(device, scene, lights);
   gpuScene->setCamera(scene.cameras.front(), options.width, options.height);
   graph::Plan plan = graph::compile(*graph, {traits_, request_, device.capabilities(), gpuScene->imports(), gpuScene->counts()});
   executor = std::make_unique<graph::Executor>(device, *graph, std::move(plan), traits_, request_, gpuScene->counts());

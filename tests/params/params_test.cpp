@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/text.h"
+
 namespace radivox::params {
 namespace {
 
@@ -132,6 +134,15 @@ TEST(Params, NearestNameNeedsHalfTheLetters) {
   EXPECT_EQ(nearestName("xyz", names), "");
   EXPECT_EQ(nearestName("", names), "");
   EXPECT_EQ(nearestName("a", {}), "");
+}
+
+TEST(Text, NumbersAsPeopleReadThem) {
+  EXPECT_EQ(printNumber(0.5), "0.5");
+  EXPECT_EQ(printNumber(1e-6), "1e-06");
+  EXPECT_EQ(printNumber(1000000), "1e+06");
+  EXPECT_EQ(printNumber(0.1234567), "0.123457");
+  EXPECT_EQ(printNumber(0.1234567, 3), "0.123");
+  EXPECT_LT(printNumber(-1.2345678901234567e-300, 17).size(), 40u);
 }
 
 }  // namespace

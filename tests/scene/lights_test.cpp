@@ -285,6 +285,89 @@ TEST(EmitterTest, ByRaysWhenMuchEmitsOrNoSamplesAreWanted) {
   EXPECT_FALSE(scene::traitsFor(loadScene("builtin:box"), none).emittersByRays);
 }
 
+// Views without texels are those that no triangle is in: points of triangles say which must have some.
+TEST(LightSetupTest, ViewsThatNoFaceIsInHaveNoTexels) {
+  uint32_t state = 7;
+  const auto random = [&state] {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<float>(state >> 8) / 16777216.f;
+  };
+  uint32_t darkCount = 0, litCount = 0;
+  for (int round = 0; round < 30; ++round) {
+    Scene s = loadScene("builtin:empty");
+    s.materials.resize(1);
+    const int triangles = 1 + static_cast<int>(random() * 200);
+    const glm::vec3 middle(random() * 8 - 4, random() * 8 - 4, random() * 8 - 4);
+    for (int t = 0; t < triangles; ++t) {
+      const glm::vec3 at = middle + glm::vec3(random(), random(), random());
+      for (int k = 0; k < 3; ++k) {
+        s.indices.push_back(static_cast<uint32_t>(s.vertices.size()));
+        s.vertices.emplace_back().position = at + 0.5f * glm::vec3(random(), random(), random());
+      }
+      s.triangleMaterials.push_back(0);
+    }
+    PunctualLight lamp;
+    lamp.intensity = glm::vec3(1);
+    lamp.type = round % 2 == 0 ? shared::kLightPoint : shared::kLightSpot;
+    lamp.direction = glm::normalize(glm::vec3(random() - 0.5f, random() - 0.5f, random() - 0.5f));
+    lamp.innerConeAngle = 0.1f;
+    lamp.outerConeAngle = 0.2f + 1.3f * random();
+    s.lights = {lamp};
+    LightOptions options;
+    options.fixed = true;
+    const LightSetup setup = setUpLights(s, options);
+    LightOptions all = options;
+    all.kept = scene::kKeepAll;
+    const LightSetup whole = setUpLights(s, all);
+    expectSoundTiles(setup);
+    EXPECT_EQ(setup.wholeShadowSide, whole.shadowResolution);
+    ASSERT_EQ(setup.views.size(), whole.views.size());
+    uint32_t dark = 0;
+    for (size_t v = 0; v < setup.views.size(); ++v) {
+      EXPECT_GT(whole.views[v].resolution, 0u);
+      bool seen = false, nearlySeen = false;
+      for (size_t t = 0; t < s.triangleCount(); ++t) {
+        for (int i = 0; i <= 8; ++i) {
+          for (int j = 0; j <= 8 - i; ++j) {
+            const auto corner = [&](size_t k) { return glm::dvec3(s.vertices[s.indices[3 * t + k]].position); };
+            const glm::dvec3 p = corner(0) + (corner(1) - corner(0)) * (i / 8.0) + (corner(2) - corner(0)) * (j / 8.0);
+            seen = seen || sees(setup.views[v], p);
+            nearlySeen = nearlySeen || sees(setup.views[v], p, 0.3);
+          }
+        }
+      }
+      EXPECT_FALSE(seen && setup.views[v].resolution == 0);
+      // Triangles of half a metre: the plane test takes a few for seen that pass beside a corner of the view.
+      EXPECT_FALSE(!nearlySeen && s.triangleCount() < 20 && setup.views[v].resolution > 0);
+      dark += setup.views[v].resolution == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(dark, setup.darkViewCount);
+    darkCount += dark;
+    litCount += static_cast<uint32_t>(setup.views.size()) - dark;
+  }
+  EXPECT_GT(darkCount, 20u);
+  EXPECT_GT(litCount, 20u);
+}
+
+TEST(LightSetupTest, LightsThatEndBeforeTheSceneReachNothing) {
+  Scene s = loadScene("builtin:box");
+  LightOptions options;
+  options.fixed = true;
+  s.lights.assign(1, PunctualLight());
+  s.lights[0].type = shared::kLightPoint;
+  s.lights[0].intensity = glm::vec3(1);
+  s.lights[0].position = glm::vec3(s.traits().boundsMax) + glm::vec3(1.f, 0.f, 0.f);
+  for (const auto& [range, reaches] : {std::pair{0.f, true}, {0.99f, false}, {1.01f, true}}) {
+    s.lights[0].range = range;
+    const scene::Traits traits = scene::traitsFor(s, options);
+    EXPECT_EQ(traits.punctualLightCount(), reaches ? 1u : 0u) << range;
+    EXPECT_EQ(traits.whyNothingBounces() == nullptr, reaches) << range;
+    EXPECT_EQ(scene::traitsFor(s, LightOptions()).punctualLightCount(), 1u) << "it may be moved";
+  }
+  s.lights[0].intensity = glm::vec3(0);
+  EXPECT_EQ(scene::traitsFor(s, options).punctualLightCount(), 0u);
+}
+
 TEST(LightSetupTest, EmptyAndDarkScenes) {
   Scene s = loadScene("builtin:empty");
   s.lights.resize(1);

@@ -54,7 +54,8 @@ void Inject::prepare(graph::PrepareContext& context) {
   if (method_ == Method::Splat) {
     splat_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
                                                             .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                            .pushConstantBytes = 12});
+                                                            .pushConstantBytes = 12,
+                                                            .constants = {{0, context.traits().soleLight()}}});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});

@@ -1,7 +1,10 @@
 #include "modules/clustered_voxel/voxelize/voxelize.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace radivox::clustered_voxel {
 
@@ -17,9 +20,24 @@ Voxelize::Voxelize()
                              params::Invalidates::Plan),
               TrianglePass::methodParam(&method_)}) {}
 
+/// Where even the shortest edge is many voxels long, more of them add detail to the light, but none to the shape.
+std::string Voxelize::adviseResolution(const scene::Traits& traits) const {
+  constexpr double kVoxelsAnEdge = 4;
+  if (!(traits.shortestEdge > 0)) return "";
+  const glm::dvec3 extent = glm::dvec3(traits.boundsMax) - glm::dvec3(traits.boundsMin);
+  const double enough = kVoxelsAnEdge * std::max({extent.x, extent.y, extent.z}) / traits.shortestEdge + 1;
+  if (2 * enough > resolution_) return "";  // half would not do
+  const auto fewer = std::max(8u, static_cast<uint32_t>(std::ceil(enough)));
+  const uint64_t now = grid_.brickCount, then = makeGrid(traits, fewer).brickCount;
+  return "resolution=" + std::to_string(resolution_) + " is more than the shapes need: at " + std::to_string(fewer) +
+         " every edge is four voxels long or more, with " + std::to_string(then) + " bricks instead of " + std::to_string(now) +
+         "; light and shadow would lose detail, so it is not done";
+}
+
 void Voxelize::declare(graph::Declaration& d) {
   grid_ = makeGridWithin(d.traits, resolution_, d.capabilities.maxStorageBufferRange, "voxelize.resolution");
   grid_.singleSided = sides_ == Sides::Gltf ? 1 : 0;
+  d.advise(adviseResolution(d.traits));
   TrianglePass::declare(d, method_);
   const uint32_t use = TrianglePass::useOf(method_) | graph::UseTransfer;
   d.write("grid", Shape::buffer(sizeof(shared::Grid), 1), "Grid: origin, voxel edge and size", use);

@@ -30,6 +30,8 @@ class Voxelize : public graph::Node {
   void record(graph::RecordContext& context) override;
 
  private:
+  std::string adviseResolution(const scene::Traits& traits) const;
+
   uint32_t resolution_ = 128;
   Sides sides_ = Sides::Both;
   TrianglePass::Method method_ = TrianglePass::Method::Auto;

@@ -42,6 +42,7 @@ bool seesLight(Light light, vec3 p) {
     if (!(clip.w > 0.0)) continue;
     vec3 ndc = clip.xyz / clip.w;
     if (any(greaterThan(abs(ndc.xy), vec2(1.0)))) continue;
+    if (view.resolution == 0u) return true;  // no face is in it
     uvec2 texel = min(uvec2((ndc.xy * 0.5 + 0.5) * float(view.resolution)), uvec2(view.resolution - 1));
     float stored = texelFetch(shadowDepth, ivec3(view.offsetX + texel.x, view.offsetY + texel.y, view.layer), 0).x;
     return ndc.z >= stored;  // reversed: larger is nearer

@@ -26,6 +26,7 @@ layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; }; 
 layout(set = 0, binding = 13, scalar) buffer StatusBuffer { uint status[]; };
 layout(set = 0, binding = 14, scalar) readonly buffer TriangleMaterialBuffer { uint triangleMaterials[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer MaterialBuffer { Material materials[]; };
+layout(constant_id = 0) const uint kSoleLight = 0xffffffffu;  // the kind of the one light; all ones: there may be more
 layout(push_constant, scalar) uniform Push {
   uint viewCount;
   uint lightCount;
@@ -94,13 +95,14 @@ void main() {
   }
   if (i >= viewTable[1 + viewCount]) return;
   uint low = 0, high = viewCount;  // the last view whose first texel is ≤ i
-  while (high - low > 1) {
+  while (kSoleLight != kLightDirectional && high - low > 1) {
     uint middle = (low + high) / 2;
     if (viewTable[1 + middle] <= i) low = middle;
     else high = middle;
   }
   ShadowView view = views[low];
   Light light = lights[view.light];
+  if (kSoleLight != 0xffffffffu) light.type = kSoleLight;
   uint local = i - viewTable[1 + low];
   uvec2 texel = uvec2(local % view.resolution, local / view.resolution);
   uint id = texelFetch(shadowTriangle, ivec3(view.offsetX + texel.x, view.offsetY + texel.y, view.layer), 0).x;
