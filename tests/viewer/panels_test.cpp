@@ -66,7 +66,7 @@ class PanelsTest : public test::CommandTest {
     app_->turn(0.02, gui_->controls());
   }
   bool turnUntil(const std::function<bool()>& holds) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(180);
     while (std::chrono::steady_clock::now() < end) {
       draw();
       if (holds()) return true;
