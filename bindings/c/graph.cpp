@@ -117,6 +117,9 @@ RadivoxResult radivoxDescribeParameter(RadivoxGraph* graph, uint32_t index, Radi
       case params::Type::Choice:
         to.type = RADIVOX_PARAMETER_CHOICE;
         break;
+      case params::Type::Text:
+        to.type = RADIVOX_PARAMETER_TEXT;
+        break;
     }
     to.name = param->name.c_str();
     to.help = param->help.c_str();

@@ -216,6 +216,7 @@ typedef enum RadivoxParameterType {
   RADIVOX_PARAMETER_UINT = 1,   /* minimum … maximum */
   RADIVOX_PARAMETER_FLOAT = 2,  /* minimum … maximum */
   RADIVOX_PARAMETER_CHOICE = 3, /* one of choices */
+  RADIVOX_PARAMETER_TEXT = 4,   /* any text that the node takes, such as a file's name */
   RADIVOX_PARAMETER_TYPE_32_BIT = 0x7fffffff
 } RadivoxParameterType;
 typedef struct RadivoxParameter {

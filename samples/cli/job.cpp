@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kDefaultGraph = "clustered_voxel_pixels";
-
 json parsePreset(const Source& preset) {
   // Copies and prints of JSON recurse: nesting beyond what a preset needs could end the stack.
   const auto limitDepth = [&preset](int depth, json::parse_event_t, json&) {
@@ -129,7 +127,7 @@ void fillRegistry(const Options& options, plugin::Registry& registry) {
   for (const std::string& module : options.modules) registry.load(module);
 }
 
-void prepareJob(const Options& options, bool wantsDisplay, Job& job) {
+void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char* fallbackGraph) {
   job.size = parseSize(options.size);
   const std::vector<std::string> aovNames = parseList("--aov", options.aovs);
   job.request.aovs = {aovNames.begin(), aovNames.end()};
@@ -157,7 +155,7 @@ void prepareJob(const Options& options, bool wantsDisplay, Job& job) {
   }
   if (options.bounces) job.request.bounces = parseBounces(*options.bounces);
 
-  const Source source = findGraph(graphName.value_or(kDefaultGraph));
+  const Source source = findGraph(graphName.value_or(fallbackGraph));
   job.graphName = source.name;
   job.graph = graph::Graph::fromJson(source.text, source.source, job.registry);
   for (const Source& preset : presets) job.graph.applyPreset(preset.text, preset.source);

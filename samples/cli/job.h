@@ -36,8 +36,13 @@ struct Job {
   Job& operator=(const Job&) = delete;
 };
 
+/// Where neither --graph nor a preset names a graph: pictures get the one that gathers by pixels; what looks at voxel faces, and walks
+/// past them, the one that gathers by faces.
+inline constexpr const char* kPictureGraph = "clustered_voxel_pixels";
+inline constexpr const char* kFaceGraph = "clustered_voxel";
+
 /// Fills `job`; the graph's outputs are those that the AOVs need, and with `wantsDisplay` the tone-mapped picture. Throws BadInput.
-void prepareJob(const Options& options, bool wantsDisplay, Job& job);
+void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char* fallbackGraph = kPictureGraph);
 
 params::Table lightTable(scene::LightOptions& lights);
 

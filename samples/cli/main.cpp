@@ -10,6 +10,7 @@
 #include "engine/params/params.h"
 #include "samples/cli/assets.h"
 #include "samples/cli/interrupt.h"
+#include "samples/cli/job.h"
 #include "samples/cli/options.h"
 #include "samples/report/options.h"
 #include "samples/stability/options.h"
@@ -47,10 +48,16 @@ void addRepeated(CLI::App* command, const std::string& name, std::vector<std::st
   command->add_option(name, to, help)->type_name(value)->allow_extra_args(false)->take_all();
 }
 
+/// `takesPresets`: the command has --preset, too.
+void addGraphOption(CLI::App* command, Options& options, const std::string& fallback, bool takesPresets = true) {
+  const std::string source = takesPresets ? "the preset's, else " : "";
+  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: " + source + fallback + ")")
+      ->type_name("NAME|FILE.json");
+}
+
 void addPlanOptions(CLI::App* command, Options& options) {
   command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
-  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
-      ->type_name("NAME|FILE.json");
+  addGraphOption(command, options, kPictureGraph);
   addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
   command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) the converged solution")
@@ -120,8 +127,7 @@ void addVdbOptions(CLI::App* command, Options& options, VdbOptions& vdb) {
       ->add_option("--faces", vdb.faces, "of indirect and error: all voxel faces (default), or view: those that the camera's picture needs")
       ->type_name("all|view");
   command->add_option("--up", vdb.up, "y (default): axes as in the scene and in Houdini; z: as Blender turns glTF files")->type_name("y|z");
-  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
-      ->type_name("NAME|FILE.json");
+  addGraphOption(command, options, kFaceGraph);
   addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter, as in voxelize.resolution=64; may be repeated", "node.param=value");
   command->add_option("--bounces", options.bounces, "indirect bounces: a number, or all (default), the converged solution")
@@ -164,8 +170,7 @@ void addStabilityOptions(CLI::App* command, stability::SuiteOptions& suite, Opti
 void addViewOptions(CLI::App* command, Options& options, viewer::ViewOptions& view) {
   command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...] (default: builtin:atrium)")
       ->type_name("");
-  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
-      ->type_name("NAME|FILE.json");
+  addGraphOption(command, options, kFaceGraph);
   addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
   command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) the converged solution")
@@ -270,8 +275,7 @@ int run(int argc, char** argv) {
   CLI::App* needs = app.add_subcommand("needs", "time and memory saved by leaving out what these scenes do not need, as a table");
   needs->add_option("SCENE", neededScenes, ".gltf or .glb files, or builtin:NAME[?key=value&...]")->type_name("")->take_all();
   needs->add_option("--runs", neededRuns, "pictures whose median counts (default: 5)")->type_name("N");
-  needs->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: clustered_voxel)")
-      ->type_name("NAME|FILE.json");
+  addGraphOption(needs, options, kPictureGraph, false);
   addRepeated(needs, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
   needs->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
   needs->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");

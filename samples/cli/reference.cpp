@@ -4,10 +4,12 @@
 
 #ifndef RADIVOX_WITH_REFERENCE
 
+#include "samples/cli/missing.h"
+
 namespace radivox::cli {
 
 int runReference(const Options&, const ReferenceOptions&) {
-  throw Error(ErrorCode::Unsupported, "this build has no path tracer; install libembree-dev and libtbb-dev and configure it anew");
+  throw Error(ErrorCode::Unsupported, std::string("this build has no path tracer; ") + kGetPathTracer);
 }
 
 }  // namespace radivox::cli

@@ -71,14 +71,14 @@ void addSink(const Options& options, const VdbOptions& vdb, const std::vector<vd
   for (const char* port : {"clustered_voxel.voxelize", "clustered_voxel.index"}) {
     for (const std::string& line : missing) {
       if (line.substr(line.find(": ") + 2) != port) continue;
-      throw Error(ErrorCode::BadInput, "graph " + job.graphName + " makes no voxels (it has no " + port + "); use --graph clustered_voxel");
+      throw Error(ErrorCode::BadInput, "graph " + job.graphName + " makes no voxels (it has no " + port + "); use --graph " + kFaceGraph);
     }
   }
   for (const vdb::GridName& grid : grids) {
     for (const std::string& line : missing) {
       if (!grid.named || line.rfind(grid.print() + ": ", 0) != 0) continue;
       throw Error(ErrorCode::BadInput, "grid '" + grid.print() + "': graph " + job.graphName + " has no " +
-                                           line.substr(line.find(": ") + 2) + "; leave the grid out, or use --graph clustered_voxel");
+                                           line.substr(line.find(": ") + 2) + "; leave the grid out, or use --graph " + kFaceGraph);
     }
   }
   vdb::leaveOutRays(job.graph, grids);
@@ -115,9 +115,7 @@ int writeVdb(Options options, const VdbOptions& vdb) {
   if (vdb.faces == "all") options.size = "16x16";
   std::unique_ptr<gpu::Device> device;  // outlives the job, whose nodes hold pipelines
   Job job;
-  // The graph that gathers by faces: the one that has every grid.
-  if (!options.graph && options.presets.empty()) options.graph = "clustered_voxel";
-  prepareJob(options, false, job);
+  prepareJob(options, false, job, kFaceGraph);  // it has every grid
   addSink(options, vdb, grids, job);
   if ((vdb::needsOf(grids) & vdb::NeedError) != 0) job.request.aovs.insert("error");
   stopIfInterrupted();
@@ -176,12 +174,11 @@ int runVdb(const Options& options, const VdbOptions& vdb) {
 
 #else
 
+#include "samples/cli/missing.h"
+
 namespace radivox::cli {
 
-int runVdb(const Options&, const VdbOptions&) {
-  throw Error(ErrorCode::Unsupported,
-              "this radivox was built without OpenVDB; install libopenvdb-dev and libnanovdb-dev and build with RADIVOX_VDB=ON");
-}
+int runVdb(const Options&, const VdbOptions&) { throw Error(ErrorCode::Unsupported, std::string("this build has no OpenVDB; ") + kGetVdb); }
 
 }  // namespace radivox::cli
 

@@ -116,9 +116,9 @@ class Calibration {
   std::vector<std::string> methodNames() const {
     if (options_.graph) return {*options_.graph};
     if (!options_.presets.empty()) return {options_.presets.front()};
-    // Other graphs lack some AOVs and nodes.
-    if (options_.aovs != "color" || !options_.sets.empty()) return {"clustered_voxel"};
-    return {"direct", "clustered_voxel", "clustered_voxel_pixels"};
+    // Other graphs lack some AOVs and nodes of the one that is meant without --graph.
+    if (options_.aovs != "color" || !options_.sets.empty()) return {cli::kPictureGraph};
+    return {"direct", cli::kFaceGraph, cli::kPictureGraph};
   }
 
   SceneTruth trace(const scene::CameraDescription& camera) {

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/text.h"
 #include "samples/cli/cache.h"
+#include "samples/cli/missing.h"
 #include "samples/report/content_key.h"
 #include "samples/report/gnuplot.h"
 #include "samples/report/page.h"
@@ -79,7 +80,9 @@ int runReport(const ReportOptions& options, const cli::Options& commonOptions) {
     throw Error(ErrorCode::BadInput, "--reference is of one scene, and there are " + std::to_string(options.scenes.size()) + "; give one");
   }
   if (options.reference.empty() && !hasPathTracer()) {
-    throw Error(ErrorCode::Unsupported, "this build has no path tracer to make a reference with; give --reference FILE.exr");
+    throw Error(
+        ErrorCode::Unsupported,
+        std::string("this build has no path tracer to make a reference with; give --reference FILE.exr, or ") + cli::kGetPathTracer);
   }
   for (const std::string& path : options.reference.empty() ? std::vector<std::string>{} : cli::splitReference(options.reference)) {
     if (!fs::exists(path)) throw Error(ErrorCode::BadInput, "--reference '" + path + "': no such file; check the path");

@@ -12,6 +12,8 @@
 
 #ifdef RADIVOX_WITH_REFERENCE
 #include "modules/reference/path_tracer.h"
+#else
+#include "samples/cli/missing.h"
 #endif
 
 namespace radivox::report {
@@ -177,7 +179,7 @@ std::optional<TracedPicture> tracePicture(const scene::Scene& scene, const scene
 bool hasPathTracer() { return false; }
 
 std::optional<TracedPicture> tracePicture(const scene::Scene&, const scene::CameraDescription&, const TruthOptions&, uint32_t) {
-  throw Error(ErrorCode::Unsupported, "this build has no path tracer; install libembree-dev and configure with RADIVOX_REFERENCE=ON");
+  throw Error(ErrorCode::Unsupported, std::string("this build has no path tracer; ") + cli::kGetPathTracer);
 }
 
 #endif
@@ -198,9 +200,7 @@ SceneTruth findTruth(const scene::Scene& scene, const scene::CameraDescription& 
 #else
   (void)scene;
   (void)camera;
-  throw Error(
-      ErrorCode::Unsupported,
-      "this build has no path tracer to make a reference with; give one by --reference, or install libembree-dev and configure again");
+  throw Error(ErrorCode::Unsupported, std::string("this build has no path tracer to make a reference with; ") + cli::kGetPathTracer);
 #endif
 }
 

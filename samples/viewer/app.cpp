@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "engine/error.h"
+#include "samples/cli/missing.h"
 
 namespace radivox::viewer {
 
@@ -46,8 +47,7 @@ App::App(const ViewOptions& viewOptions, const cli::Options& options, std::funct
   if (!viewOptions.views.empty()) viewsPath = viewOptions.views;
   hasViewLamps_ = views.lamps.has_value();
   if (truth && !Truth::isAvailable())
-    throw Error(ErrorCode::Unsupported,
-                "--truth: this build has no path tracer; install libembree-dev and libtbb-dev and configure it anew");
+    throw Error(ErrorCode::Unsupported, std::string("--truth: this build has no path tracer; ") + cli::kGetPathTracer);
   truth_ = std::make_unique<Truth>(std::move(wake));
 }
 

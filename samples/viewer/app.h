@@ -31,7 +31,7 @@ class App {
   void open(const std::string& sceneOrFile);  ///< .gltf, .glb, builtin:…; .exr: the picture to compare with; .json: views
   void saveScreenshot();                      ///< .png of what is shown, .exr of every AOV
   static bool canDumpVoxels();                ///< the build has modules/vdb
-  void dumpVoxels();                          ///< .vdb of every grid
+  void dumpVoxels();                          ///< .vdb of every grid that the picture has made
   void addBookmark();
   void jumpTo(const scene::CameraDescription& camera);
   void startRecording();

@@ -8,6 +8,8 @@
 #include "samples/cli/picture.h"
 #ifdef RADIVOX_WITH_VDB
 #include "modules/vdb/dump.h"
+#else
+#include "samples/cli/missing.h"
 #endif
 
 namespace radivox::viewer {
@@ -172,16 +174,18 @@ image::Layer Method::aov(const std::string& name, const scene::Scene& scene) {
   throw Error(ErrorCode::BadInput, "AOV " + name + " is not kept by this picture; wait for the full one, or choose another graph");
 }
 
-void Method::dumpVoxels(const std::string& path, const scene::Scene& scene) {
+std::string Method::dumpVoxels(const std::string& path, const scene::Scene& scene) {
 #ifdef RADIVOX_WITH_VDB
   vdb::DumpRequest request;
   request.file = path;
   request.scene = scene.name;
   request.origin = scene.origin;
-  vdb::dumpFrame(device_, job_->graph, *executor_, traits_, request);
+  std::string names;
+  for (const std::string& line : vdb::dumpFrame(device_, job_->graph, *executor_, traits_, request).leftOut)
+    names += (names.empty() ? "" : ", ") + line.substr(0, line.find(':'));
+  return names.empty() ? "" : "without " + names + ", which this picture did not need; `radivox vdb` writes them";
 #else
-  throw Error(ErrorCode::Unsupported,
-              path + ": this build writes no voxels of " + scene.name + "; install libopenvdb-dev and configure it anew");
+  throw Error(ErrorCode::Unsupported, path + ": this build writes no voxels of " + scene.name + "; " + cli::kGetVdb);
 #endif
 }
 

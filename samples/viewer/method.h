@@ -35,8 +35,9 @@ class Method {
   bool isFilmic() const;
   /// The AOV as layers of a file have it. Throws BadInput where the plan has none of that name.
   image::Layer aov(const std::string& name, const scene::Scene& scene);
-  /// Every voxel grid to a .vdb or .nvdb file. Throws Error, Unsupported where the build has no modules/vdb.
-  void dumpVoxels(const std::string& path, const scene::Scene& scene);
+  /// The voxel grids to a .vdb or .nvdb file. Returns a remark on those that no node has made, empty: all are there. Throws Error,
+  /// Unsupported where the build has no modules/vdb.
+  std::string dumpVoxels(const std::string& path, const scene::Scene& scene);
   std::vector<std::string> aovNames() const;
   GraphReport report() const;
   Ports ports() const { return Ports(job_->graph, *executor_); }

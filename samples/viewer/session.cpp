@@ -247,7 +247,7 @@ std::vector<image::Layer> Session::layers() {
   return layers;
 }
 
-void Session::save(const std::string& path) {
+std::string Session::save(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension();
   if (extension == ".exr") {
     image::writeExr(path, layers());
@@ -256,10 +256,11 @@ void Session::save(const std::string& path) {
     image::writePngBytes(path, lastPixels_->width, lastPixels_->height, 4, lastPixels_->rgba);
   } else if (extension == ".vdb" || extension == ".nvdb") {
     if (!full_ || !full_->isLit()) throw Error(ErrorCode::BadInput, "there is no full picture yet; wait for it");
-    full_->dumpVoxels(path, *loaded_);
+    return full_->dumpVoxels(path, *loaded_);
   } else {
     throw Error(ErrorCode::BadInput, "'" + path + "': unknown kind of file; end the name in .exr or .png");
   }
+  return {};
 }
 
 }  // namespace radivox::viewer

@@ -44,8 +44,9 @@ class Session {
 
   /// Layers of the last full picture, linear; every AOV that the graph has, `color` first. Throws BadInput before there is one.
   std::vector<image::Layer> layers();
-  /// Writes the last picture: .png as it was shown, overlay and all; .exr all layers(); .vdb or .nvdb the voxels. Throws Error.
-  void save(const std::string& path);
+  /// Writes the last picture: .png as it was shown, overlay and all; .exr all layers(); .vdb or .nvdb the voxels. Returns a remark on what
+  /// the file lacks, empty: nothing. Throws Error.
+  std::string save(const std::string& path);
   /// Null before the first show().
   std::shared_ptr<const scene::Scene> scene() const { return loaded_; }
   gpu::Device& device() { return *device_; }

@@ -6,12 +6,9 @@ namespace radivox::viewer {
 
 Settings::Settings(const cli::Options& options) : modules_(options.modules) { load(options); }
 
-void Settings::load(const cli::Options& given) {
-  cli::Options options = given;
-  // The graph that gathers by faces: they stay lit while the camera walks, and the overlays show them.
-  if (!options.graph && options.presets.empty()) options.graph = "clustered_voxel";
+void Settings::load(const cli::Options& options) {
   auto job = std::make_unique<cli::Job>();
-  cli::prepareJob(options, true, *job);
+  cli::prepareJob(options, true, *job, cli::kFaceGraph);  // faces stay lit while the camera walks, and the overlays show them
   job_ = std::move(job);
   // A file keeps its path, so that it can be found again.
   graph_ = options.graph.value_or(job_->graphName);

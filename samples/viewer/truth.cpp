@@ -9,6 +9,8 @@
 
 #ifdef RADIVOX_WITH_REFERENCE
 #include "modules/reference/path_tracer.h"
+#else
+#include "samples/cli/missing.h"
 #endif
 
 namespace radivox::viewer {
@@ -149,7 +151,7 @@ void Truth::trace(const Wish& wish, uint64_t version) {
 bool Truth::isAvailable() { return false; }
 
 void Truth::trace(const Wish&, uint64_t) {
-  throw Error(ErrorCode::Unsupported, "this build has no path tracer; install libembree-dev and libtbb-dev and configure it anew");
+  throw Error(ErrorCode::Unsupported, std::string("this build has no path tracer; ") + cli::kGetPathTracer);
 }
 
 #endif

@@ -148,7 +148,8 @@ void Worker::writeFiles(Session& session, const std::vector<std::string>& paths)
   for (const std::string& path : paths) {
     std::string line = path;
     try {
-      session.save(path);
+      const std::string remark = session.save(path);
+      if (!remark.empty()) line += ", " + remark;
     } catch (const Error& error) {
       line = error.what();
     }

@@ -187,6 +187,22 @@ TEST_F(CInterface, GraphsAndParameters) {
   EXPECT_FAILS(RADIVOX_BAD_INPUT, radivoxDescribeParameter(graph_, 100000, &parameter), "100000");
 }
 
+#ifdef RADIVOX_WITH_VDB
+TEST_F(CInterface, TextParameters) {
+  makeGraph(R"({"nodes": {"file": {"type": "vdb.write"}}})");
+  auto parameter = make<RadivoxParameter>();
+  ASSERT_WORKS(radivoxDescribeParameter(graph_, 0, &parameter));
+  EXPECT_STREQ(parameter.name, "file");
+  EXPECT_EQ(parameter.type, static_cast<uint32_t>(RADIVOX_PARAMETER_TEXT));
+  EXPECT_STREQ(parameter.choices, "");
+  ASSERT_WORKS(radivoxSetParameter(graph_, "file.file", "hall.vdb"));
+  const char* value = nullptr;
+  ASSERT_WORKS(radivoxGetParameter(graph_, "file.file", &value));
+  EXPECT_STREQ(value, "hall.vdb");
+  EXPECT_FAILS(RADIVOX_BAD_INPUT, radivoxSetParameter(graph_, "file.grids", "no_such"), "no_such");
+}
+#endif
+
 TEST_F(CInterface, ScenesOfTheHostAreLitAsFilesAre) {
   const radivox::scene::Scene scene = radivox::scene::loadScene("builtin:cornell_point");
   std::vector<RadivoxVertex> vertices;

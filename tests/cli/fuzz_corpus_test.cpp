@@ -35,7 +35,11 @@ TEST_F(FuzzCorpus, GraphsGiveAPlanOrAreRefused) {
     }
   }
   EXPECT_GE(count, 7u);
+#ifdef RADIVOX_WITH_REFERENCE
   EXPECT_GE(planned, 3u);
+#else
+  EXPECT_GE(planned, 2u);  // one is the path tracer's
+#endif
 }
 
 }  // namespace

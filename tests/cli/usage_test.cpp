@@ -33,6 +33,22 @@ TEST_F(Usage, HelpAndVersionAreNotErrors) {
   EXPECT_NE(runRadivox({"--help"}).out.find("130"), std::string::npos) << "exit codes are listed";
 }
 
+TEST_F(Usage, HelpNamesTheGraphThatIsTaken) {
+  const auto defaultOf = [](const std::string& command) {
+    const std::string help = runRadivox({command, "--help"}).out;
+    const size_t graph = help.find("--graph"), begin = help.find("clustered_voxel", graph);
+    return help.substr(begin, help.find(')', begin) - begin);
+  };
+  for (const char* command : {"render", "graph", "needs"}) EXPECT_EQ(defaultOf(command), "clustered_voxel_pixels") << command;
+  for (const char* command : {"vdb", "view"}) EXPECT_EQ(defaultOf(command), "clustered_voxel") << command;
+  const auto plan = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"graph", "builtin:box"});
+    return runRadivox(more).out;
+  };
+  EXPECT_EQ(plan({}), plan({"--graph", "clustered_voxel_pixels"}));
+  EXPECT_NE(plan({}), plan({"--graph", "clustered_voxel"}));
+}
+
 TEST_F(Usage, CommandsAndOptionsAreSpelledForYou) {
   expectError({}, 2, {"command", "render"});
   expectError({"rendr"}, 2, {"'rendr'", "'render'"});

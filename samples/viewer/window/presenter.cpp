@@ -122,6 +122,8 @@ void Presenter::present(const PanelFrame& frame, VkResult injected) {
   for (uint32_t attempt = 0; attempt < 4; ++attempt) {
     if (screen.surface == VK_NULL_HANDLE) screen.surface = options_.makeSurface(screen.device->instance());
     if (!screen.painter) screen.painter = std::make_unique<Painter>(*screen.device, Swapchain::findFormat(*screen.device, screen.surface));
+    // A window need not say that it was resized when an image is shown.
+    if (screen.swapchain && !screen.swapchain->fits()) screen.swapchain.reset();
     if (!screen.swapchain)
       screen.swapchain = std::make_unique<Swapchain>(*screen.device, screen.surface, VkExtent2D{frame.width, frame.height});
     if (screen.swapchain->isEmpty()) {  // minimized: another frame comes when it is not
@@ -130,7 +132,7 @@ void Presenter::present(const PanelFrame& frame, VkResult injected) {
     }
     uint32_t index = 0;
     VkResult result = screen.swapchain->acquire(index);
-    if (result == VK_TIMEOUT) return;
+    if (result == VK_TIMEOUT) continue;
     if (result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR) {
       screen.painter->load(frame);
       gpu::Image& target = screen.swapchain->image(index);

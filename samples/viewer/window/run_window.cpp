@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "samples/cli/interrupt.h"
 #include "samples/viewer/panels/gui.h"
+#include "samples/viewer/window/events.h"
 #include "samples/viewer/window/loop_report.h"
 #include "samples/viewer/window/presenter.h"
 
@@ -73,35 +74,6 @@ PresenterOptions presenterOptions(GLFWwindow* window, const cli::Options& option
   };
   presenter.wake = glfwPostEmptyEvent;
   return presenter;
-}
-
-/// What GLFW's callbacks write. The backend of Dear ImGui is installed after them, and calls them in turn.
-struct Events {
-  App* app = nullptr;
-  Gui* gui = nullptr;
-  bool any = true;
-};
-
-Events& eventsOf(GLFWwindow* window) { return *static_cast<Events*>(glfwGetWindowUserPointer(window)); }
-
-void watch(GLFWwindow* window, Events& events) {
-  glfwSetWindowUserPointer(window, &events);
-  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
-    eventsOf(w).any = true;
-    if (action == GLFW_PRESS) eventsOf(w).gui->press(key, (mods & GLFW_MOD_CONTROL) != 0);
-  });
-  glfwSetCharCallback(window, [](GLFWwindow* w, unsigned) { eventsOf(w).any = true; });
-  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { eventsOf(w).any = true; });
-  glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { eventsOf(w).any = true; });
-  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { eventsOf(w).any = true; });
-  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { eventsOf(w).any = true; });
-  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { eventsOf(w).any = true; });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { eventsOf(w).any = true; });
-  glfwSetWindowIconifyCallback(window, [](GLFWwindow* w, int) { eventsOf(w).any = true; });
-  glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    eventsOf(w).any = true;
-    for (int i = 0; i < count; ++i) eventsOf(w).app->open(paths[i]);
-  });
 }
 
 /// Turns of the event loop until the window closes. Nothing in it waits but for events.

@@ -28,7 +28,7 @@ VkSurfaceFormatKHR chooseFormat(gpu::Device& device, VkSurfaceKHR surface) {
 
 VkFormat Swapchain::findFormat(gpu::Device& device, VkSurfaceKHR surface) { return chooseFormat(device, surface).format; }
 
-Swapchain::Swapchain(gpu::Device& device, VkSurfaceKHR surface, VkExtent2D extent) : device_(device) {
+Swapchain::Swapchain(gpu::Device& device, VkSurfaceKHR surface, VkExtent2D extent) : device_(device), surface_(surface) {
   VkBool32 supported = VK_FALSE;
   gpu::check(vkGetPhysicalDeviceSurfaceSupportKHR(device.physicalDevice(), device.queueFamily(), surface, &supported),
              "vkGetPhysicalDeviceSurfaceSupportKHR");
@@ -36,6 +36,7 @@ Swapchain::Swapchain(gpu::Device& device, VkSurfaceKHR surface, VkExtent2D exten
   VkSurfaceCapabilitiesKHR can{};
   gpu::check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device.physicalDevice(), surface, &can),
              "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+  size_ = can.currentExtent;
   if (can.currentExtent.width != ~0u) extent = can.currentExtent;
   extent.width = std::clamp(extent.width, can.minImageExtent.width, can.maxImageExtent.width);
   extent.height = std::clamp(extent.height, can.minImageExtent.height, can.maxImageExtent.height);
@@ -82,6 +83,13 @@ Swapchain::~Swapchain() {
   for (VkImageView view : views_) vkDestroyImageView(device_.handle(), view, nullptr);
   vkDestroyFence(device_.handle(), fence_, nullptr);
   vkDestroySwapchainKHR(device_.handle(), swapchain_, nullptr);
+}
+
+bool Swapchain::fits() const {
+  VkSurfaceCapabilitiesKHR can{};
+  // A lost surface shows when an image of it is asked for.
+  if (vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physicalDevice(), surface_, &can) != VK_SUCCESS) return true;
+  return can.currentExtent.width == size_.width && can.currentExtent.height == size_.height;
 }
 
 VkResult Swapchain::acquire(uint32_t& index) {

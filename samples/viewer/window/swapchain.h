@@ -16,6 +16,8 @@ class Swapchain {
   static VkFormat findFormat(gpu::Device& device, VkSurfaceKHR surface);
 
   bool isEmpty() const { return swapchain_ == VK_NULL_HANDLE; }  ///< the window has no pixels now
+  /// False: the window has another size by now, and the images would not fill it.
+  bool fits() const;
   /// The next image to draw to, once it is free. VK_TIMEOUT: none is for now.
   VkResult acquire(uint32_t& index);
   gpu::Image& image(uint32_t index) { return images_[index]; }
@@ -24,6 +26,8 @@ class Swapchain {
 
  private:
   gpu::Device& device_;
+  VkSurfaceKHR surface_;
+  VkExtent2D size_{};  ///< the surface's when the images were made; ~0: it leaves that open
   VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
   VkFence fence_ = VK_NULL_HANDLE;
   std::vector<VkImageView> views_;
