@@ -20,9 +20,9 @@ void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline,
   assert(6 + rest.size() <= kMost);
   const gpu::Buffer& grid = context.buffer("grid");
   // A fixed array: recording allocates nothing.
-  std::array<gpu::BoundResource, kMost> all = {grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid,
+  std::array<gpu::BoundResource, kMost> all = {grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid,
                                                grid, grid, grid, grid, grid, grid, grid, grid, grid, grid, grid,
-                                               grid, grid, grid, grid, grid, grid, grid, grid, grid};
+                                               grid, grid, grid, grid, grid, grid, grid, grid, grid, grid};
   size_t i = 0;
   for (const char* name : {"grid", "occupancy", "rank", "mask", "first", "faces"}) all[i++] = context.buffer(name);
   for (const gpu::BoundResource& resource : rest) all[i++] = resource;

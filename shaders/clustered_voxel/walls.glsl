@@ -1,6 +1,11 @@
 // Whether a voxel face stands between two points of neighbouring voxels: interpolation and filtering must not look through walls.
 #ifndef RADIVOX_CLUSTERED_VOXEL_WALLS_GLSL
 #define RADIVOX_CLUSTERED_VOXEL_WALLS_GLSL
+#ifndef RADIVOX_WALL_SLACK
+#define RADIVOX_WALL_SLACK 0.02  // voxels: a wall nearer than this to one of the points is the surface that it lies on
+#define RADIVOX_WALL_AREA 0.3    // h²: a sill or a slab's edge is no wall
+#define RADIVOX_WALL_COSINE 0.8  // between a wall's normal and the axis
+#endif
 
 // A face of `voxel` (at `coord`) of direction f whose plane crosses the axis between a and b (grid space, along axis f >> 1). Where a wall
 // meets the surface that is lit, the voxel may hold a scrap of it only: the next voxel in front of the surface, `ahead`, tells.
@@ -8,17 +13,18 @@ bool wallAt(ivec3 coord, uint voxel, uint f, float a, float b, ivec3 ahead) {
   uint s = faceIndex(voxel, f);
   if (s == kNone) return false;
   uint k = f >> 1;
-  if (faces[s].area < 0.3 && ahead[k] == 0) {
+  if (faces[s].area < RADIVOX_WALL_AREA && ahead[k] == 0) {
     coord += ahead;
     voxel = voxelIndex(coord);
     s = voxel == kNone ? kNone : faceIndex(voxel, f);
     if (s == kNone) return false;
   }
   Face face = faces[s];
-  // A sill or a slab's edge is no wall: it must cover a good part of the voxel and look along the axis.
-  if (face.area < 0.3 || abs(decodeNormal(face.normal)[k]) < 0.8) return false;
-  float plane = float(coord[k]) + decodePosition(face.position)[k];
-  return (plane - a) * (plane - b) < 0.0 && min(abs(plane - a), abs(plane - b)) > 0.02;
+  if (face.area < RADIVOX_WALL_AREA || abs(decodeNormal(face.normal)[k]) < RADIVOX_WALL_COSINE) return false;
+  precise float plane = float(coord[k]) + decodePosition(face.position)[k];
+  precise float fromPlane = a - plane;
+  precise float toPlane = b - plane;
+  return fromPlane * toPlane <= 0.0 && min(abs(fromPlane), abs(toPlane)) >= RADIVOX_WALL_SLACK;
 }
 
 // One step along the normal's main axis.

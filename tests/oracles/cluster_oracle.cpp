@@ -180,6 +180,36 @@ class Clustering {
     return label_[a] != kNone || (cell_[a] == cell_[b] && directionBin(a) == directionBin(b));
   }
 
+  /// A face across axis k that one sees on the way from a to b, in the voxel of either: it looks back along the axis, and its place on the axis is
+  /// between theirs. Where the voxel holds hardly any of it, that of the voxel next to it, on the side to which a looks, counts.
+  bool seesWall(uint32_t a, uint32_t b) const {
+    const uint32_t up = dominantDirection(normal_[a]);
+    for (int k = 0; k < 3; ++k) {
+      const float step = position_[b][k] - position_[a][k];
+      if (std::abs(step) < 0.05f) continue;
+      const uint32_t direction = static_cast<uint32_t>(2 * k) + (step > 0.f ? 1 : 0);
+      for (const uint32_t at : {a, b}) {
+        uint32_t wall = faceAt(voxel_[at], direction);
+        if (wall == kNone) continue;
+        glm::ivec3 ahead(0);
+        ahead[static_cast<int>(up >> 1)] = (up & 1) != 0 ? -1 : 1;
+        if (s_.faces[wall].area < 0.01f && static_cast<int>(up >> 1) != k) wall = faceAt(voxel_[at] + ahead, direction);
+        if (wall == kNone || s_.faces[wall].area < 0.01f || std::abs(normal_[wall][k]) < 0.5f) continue;
+        const float before = position_[a][k] - position_[wall][k], after = position_[b][k] - position_[wall][k];
+        if (before * after <= 0.f) return true;
+      }
+    }
+    return false;
+  }
+  bool areApart(uint32_t a, uint32_t b) const { return voxel_[a] != voxel_[b] && (seesWall(a, b) || seesWall(b, a)); }
+  uint32_t faceAt(const glm::ivec3& coordinate, uint32_t direction) const {
+    const uint32_t voxel = s_.voxelIndex(coordinate);
+    if (voxel == kNone) return kNone;
+    for (uint32_t i = s_.first[voxel]; i < s_.first[voxel + 1]; ++i)
+      if ((s_.faces[i].key & 7) == direction) return i;
+    return kNone;
+  }
+
   void forNeighbours(uint32_t face, const std::function<void(uint32_t)>& visit) const {
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
@@ -203,7 +233,7 @@ class Clustering {
         const uint32_t a = open.front();
         open.pop();
         forNeighbours(a, [&](uint32_t b) {
-          if (piece_[b] != kNone || !belongTogether(a, b)) return;
+          if (piece_[b] != kNone || !belongTogether(a, b) || areApart(a, b)) return;
           piece_[b] = i;
           open.push(b);
         });
@@ -222,7 +252,10 @@ class Clustering {
     for (const auto& [piece, faces] : members) {
       if (faces.size() > settings_.merge) continue;
       std::set<uint32_t> candidates;
-      for (uint32_t face : faces) forNeighbours(face, [&](uint32_t b) { candidates.insert(piece_[b]); });
+      for (uint32_t face : faces)
+        forNeighbours(face, [&](uint32_t b) {
+          if (!areApart(face, b)) candidates.insert(piece_[b]);
+        });
       candidates.erase(piece);
       float least = std::numeric_limits<float>::infinity();
       for (uint32_t candidate : candidates) {

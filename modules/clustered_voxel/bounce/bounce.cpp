@@ -114,8 +114,7 @@ void Bounce::prepare(graph::PrepareContext& context) {
     sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 7);
     finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 4);
   }
-  finishFaces_ =
-      makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 12, {{0, context.has("visibility_entries") ? 1u : 0u}});
+  finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 12, {{0, context.has("visibility_entries") ? 1u : 0u}});
 }
 
 BounceControl Bounce::makeControl(uint32_t clusterCount, bool counted) const {
@@ -203,11 +202,11 @@ void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_
   const bool counted = hasRows && sweeps > 0;
   push.senders = counted && (sweeps - 1) % 2 != 0 ? push.clusterCount : 0;
   commands.barrier();
-  commands.bind(finishFaces_, {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"), received, none,
-                               context.buffer("face_radiosity"), hasRows ? context.buffer("visibility_row_start") : none,
-                               hasRows ? context.buffer("chunk_table") : none,
-                               counted ? context.buffer("iterate") : context.buffer("cluster_radiosity"),
-                               context.buffer("direct_radiosity"), emission, context.buffer("clusters")});
+  commands.bind(finishFaces_,
+                {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"), received, none,
+                 context.buffer("face_radiosity"), hasRows ? context.buffer("visibility_row_start") : none,
+                 hasRows ? context.buffer("chunk_table") : none, counted ? context.buffer("iterate") : context.buffer("cluster_radiosity"),
+                 context.buffer("direct_radiosity"), emission, context.buffer("clusters")});
   commands.push(push);
   commands.dispatchItems(push.faceCount, kGroup);
 }

@@ -12,9 +12,10 @@
 // Seeds: one per seed cell of spacing³ voxels and dominant direction of the normals in it, so that the two sides of a thin wall never
 // meet. D² = space_weight |x_s − x_c|²/S² + normal_weight (1 − n_s·n_c)/(1 − cos angle); a seed rejects faces whose normal is farther
 // than `angle` from its own. Each face decides for itself among the seeds of 27 cells, so nothing depends on timing.
-// What holds at the end: every face is in one cluster; its faces are connected (26 neighbours); each face is within `angle` of the
-// normal of one common seed, and so within 2 · angle of the cluster's mean. Faces that no seed accepts form clusters of their own
-// (the paper drops them). Clusters of at most `merge` faces join a touching cluster whose seed accepts all of them, if there is one.
+// What holds at the end: every face is in one cluster; its faces are connected (26 neighbours between which no wall stands:
+// shaders/clustered_voxel/cluster/apart.glsl); each face is within `angle` of the normal of one common seed, and so within 2 · angle of
+// the cluster's mean. Faces that no seed accepts form clusters of their own (the paper drops them). Clusters of at most `merge` faces join a
+// touching cluster whose seed accepts all of them, if there is one.
 #pragma once
 
 #include <memory>

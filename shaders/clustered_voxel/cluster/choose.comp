@@ -1,10 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Each small piece looks for the touching piece that suits its faces best: least Σ D² to that piece's seed, which must accept them all.
+// Each small piece looks for the touching piece that suits its faces best: least Σ D² to that piece's seed, which must accept them all. Pieces
+// with a wall between do not touch.
 // Ties go to the lower piece. A piece that orphans founded has its lowest face for a seed.
 #include "clustered_voxel/cluster/cluster_common.glsl"
 #include "clustered_voxel/structure.glsl"
+#include "clustered_voxel/cluster/apart.glsl"
 layout(local_size_x = kClusterGroup) in;
 layout(set = 0, binding = 6, scalar) readonly buffer Voxels { uint voxels[]; };
 layout(set = 0, binding = 7, scalar) readonly buffer SeedLabels { uint seedLabels[]; };
@@ -20,15 +22,29 @@ Seed seedOf(uint piece) {
   return Seed(facePosition(face, unpackVoxel(voxels[face.key >> 3])), decodeNormal(face.normal));
 }
 
+// Small pieces are few: the group's first lanes take them, so that others do not wait on each.
+shared uint work[kClusterGroup];
+shared uint workCount;
+
 void main() {
-  uint piece = radivoxItemIndex();
-  if (piece >= push.faceCount) return;
-  uint target = kNone;
-  uint size = small[4u * piece];
-  if (pieces[piece] == piece && size <= push.mergeLimit) {
+  uint face = radivoxItemIndex();
+  if (gl_LocalInvocationID.x == 0u) workCount = 0u;
+  barrier();
+  if (face < push.faceCount) {
+    if (pieces[face] == face && small[4u * face] <= push.mergeLimit)
+      work[atomicAdd(workCount, 1u)] = face;
+    else
+      targets[face] = kNone;
+  }
+  barrier();
+  if (gl_LocalInvocationID.x < workCount) {
+    uint piece = work[gl_LocalInvocationID.x];
+    uint size = small[4u * piece];
+    uint target = kNone;
     vec3 position[kMostMergeFaces];
     vec3 normal[kMostMergeFaces];
     ivec3 coordinate[kMostMergeFaces];
+    uint members[kMostMergeFaces];
     for (uint i = 0; i < size; ++i) {
       // By face id, so that the sum below has one order: members came in any.
       uint member = kNone;
@@ -44,19 +60,20 @@ void main() {
       position[i] = facePosition(face, voxel);
       normal[i] = decodeNormal(face.normal);
       coordinate[i] = ivec3(voxel);
+      members[i] = member;
     }
     float bestDistance = 0.0;
     uint last = kNone;
     for (uint i = 0; i < size; ++i) {
       for (uint step = 0; step < 27u; ++step) {
-        uint other = voxelIndex(coordinate[i] + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1);
+        ivec3 otherCoordinate = coordinate[i] + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1;
+        uint other = voxelIndex(otherCoordinate);
         if (other == kNone) continue;
         uint begin = firstFaces[other];
         uint end = begin + uint(bitCount(faceMasks[other]));
         for (uint b = begin; b < end; ++b) {
           uint candidate = pieces[b];
           if (candidate == piece || candidate == last || candidate == target) continue;
-          last = candidate;
           Seed seed = seedOf(candidate);
           precise float distance = 0.0;
           bool accepted = true;
@@ -65,14 +82,16 @@ void main() {
             if (cosine < push.cosAngle) accepted = false;
             distance = distance + squaredDistance(position[j], seed, cosine);
           }
-          if (!accepted) continue;
-          if (target == kNone || distance < bestDistance || (distance == bestDistance && candidate < target)) {
+          bool better = target == kNone || distance < bestDistance || (distance == bestDistance && candidate < target);
+          if (accepted && better) {
+            if (areApart(members[i], coordinate[i], b, otherCoordinate)) continue;
             target = candidate;
             bestDistance = distance;
           }
+          last = candidate;
         }
       }
     }
+    targets[piece] = target;
   }
-  targets[piece] = target;
 }

@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Joins faces of the same seed whose voxels touch (26 neighbours, or the same voxel), one lane a voxel. Faces that no seed accepted are
-// left to connect_orphans.comp.
+// Joins faces of the same seed whose voxels touch (26 neighbours, or the same voxel) and between which no wall stands, one lane a voxel. Faces
+// that no seed accepted are left to connect_orphans.comp.
 #include "clustered_voxel/cluster/cluster_common.glsl"
 #include "clustered_voxel/structure.glsl"
+#include "clustered_voxel/cluster/apart.glsl"
 #define RADIVOX_BIND_PARENTS 8
 #include "clustered_voxel/cluster/union_find.glsl"
 layout(local_size_x = kClusterGroup) in;
@@ -30,19 +31,27 @@ void main() {
   ivec3 coordinate = ivec3(unpackVoxel(voxels[v]));
   // Half of the neighbourhood: the other half sees us.
   for (uint step = 0; step < 13u; ++step) {
-    uint other = voxelIndex(coordinate + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1);
+    ivec3 otherCoordinate = coordinate + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1;
+    uint other = voxelIndex(otherCoordinate);
     if (other == kNone) continue;
     uint otherBegin = firstFaces[other];
     uint otherEnd = otherBegin + uint(bitCount(faceMasks[other]));
-    uint last = kNone;
-    for (uint b = otherBegin; b < otherEnd; ++b) {
-      uint otherLabel = seedLabels[b];
-      if (otherLabel == last) continue;
-      last = otherLabel;
-      uint match = kNone;
-      for (uint f = 0; f < kFaceCount; ++f)
-        if (match == kNone && label[f] == otherLabel) match = begin + f;
-      if (otherLabel != kNone && match != kNone) unite(match, b);
+    // Pairs are numbered 6 · (the other's face) + our face. Lanes look for their next pair each on its own and then look for walls together.
+    uint pair = 0u;
+    uint pairs = kFaceCount * (otherEnd - otherBegin);
+    while (true) {
+      while (pair < pairs) {
+        uint own = label[pair % kFaceCount];
+        if (own != kNone && own == seedLabels[otherBegin + pair / kFaceCount]) break;
+        ++pair;
+      }
+      if (pair >= pairs) break;
+      uint a = begin + pair % kFaceCount;
+      uint b = otherBegin + pair / kFaceCount;
+      bool joins = !areApart(a, coordinate, b, otherCoordinate);
+      if (joins) unite(a, b);
+      // This voxel's others of the seed are one with `a` already.
+      pair = joins ? (pair / kFaceCount + 1u) * kFaceCount : pair + 1u;
     }
   }
 }
