@@ -1,5 +1,6 @@
 #include "samples/cli/stats.h"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -91,14 +92,17 @@ double bytesPerVoxel(const graph::FrameStats& frame, const graph::Plan& plan) {
   if (voxels == frame.counts.end() || voxels->second == 0) return 0.0;
   std::map<std::string, std::string> typeOf;
   for (const graph::NodeStats& node : frame.nodes) typeOf[node.name] = node.type;
-  std::set<std::string> images;
+  // Pictures are the request's, not the method's.
+  std::set<std::string> pictures;
   for (const graph::PlannedResource& resource : plan.resources) {
-    if (resource.shape.kind == graph::ResourceKind::Image) images.insert(resource.name);
+    const std::vector<std::string>& counts = resource.shape.width.counts();
+    if (resource.shape.kind == graph::ResourceKind::Image && std::find(counts.begin(), counts.end(), "width") != counts.end())
+      pictures.insert(resource.name);
   }
   uint64_t bytes = 0;
   for (const graph::ResourceStats& resource : frame.resources) {
     const std::string& type = typeOf[resource.name.substr(0, resource.name.find('.'))];
-    if (type.rfind("clustered_voxel.", 0) == 0 && images.count(resource.name) == 0) bytes += resource.bytes;
+    if (type.rfind("clustered_voxel.", 0) == 0 && pictures.count(resource.name) == 0) bytes += resource.bytes;
   }
   return static_cast<double>(bytes) / static_cast<double>(voxels->second);
 }
