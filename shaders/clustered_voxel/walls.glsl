@@ -1,6 +1,7 @@
 // Whether a voxel face stands between two points of neighbouring voxels: interpolation and filtering must not look through walls.
 #ifndef RADIVOX_CLUSTERED_VOXEL_WALLS_GLSL
 #define RADIVOX_CLUSTERED_VOXEL_WALLS_GLSL
+#define RADIVOX_WALL_STEP 0.05   // voxels: along an axis in which two points differ by less, no wall stands between them
 #ifndef RADIVOX_WALL_SLACK
 #define RADIVOX_WALL_SLACK 0.02  // voxels: a wall nearer than this to one of the points is the surface that it lies on
 #define RADIVOX_WALL_AREA 0.3    // h²: a sill or a slab's edge is no wall
@@ -40,7 +41,7 @@ ivec3 stepAhead(vec3 n) {
 bool wallBetween(ivec3 fromCoord, uint fromVoxel, vec3 from, ivec3 toCoord, uint toVoxel, vec3 to, ivec3 ahead) {
   for (uint k = 0; k < 3; ++k) {
     float step = to[k] - from[k];
-    if (abs(step) < 0.05) continue;
+    if (abs(step) < RADIVOX_WALL_STEP) continue;
     uint f = 2 * k + (step > 0.0 ? 1u : 0u);
     if (fromVoxel != kNone && wallAt(fromCoord, fromVoxel, f, from[k], to[k], ahead)) return true;
     if (wallAt(toCoord, toVoxel, f, from[k], to[k], ahead)) return true;

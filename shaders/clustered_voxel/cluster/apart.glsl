@@ -14,6 +14,11 @@ bool areApart(uint a, ivec3 aCoordinate, uint b, ivec3 bCoordinate) {
   precise vec3 to = vec3(bCoordinate) + decodePosition(faces[b].position);
   uint aVoxel = faces[a].key >> 3;
   uint bVoxel = faces[b].key >> 3;
+  // Mostly neither voxel has a face across the way, and nothing more need be read.
+  uint mask = faceMasks[aVoxel] | faceMasks[bVoxel];
+  bvec3 walled = greaterThanEqual(abs(to - from), vec3(RADIVOX_WALL_STEP));
+  walled = bvec3(walled.x && (mask & 3u) != 0u, walled.y && (mask & 12u) != 0u, walled.z && (mask & 48u) != 0u);
+  if (!any(walled)) return false;
   return wallBetween(aCoordinate, aVoxel, from, bCoordinate, bVoxel, to, stepAhead(decodeNormal(faces[a].normal))) ||
          wallBetween(bCoordinate, bVoxel, to, aCoordinate, aVoxel, from, stepAhead(decodeNormal(faces[b].normal)));
 }
