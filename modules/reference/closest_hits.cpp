@@ -9,7 +9,7 @@
 #include <chrono>
 #include <limits>
 
-#include "engine/error.h"
+#include "modules/reference/embree_scene.h"
 #include "modules/reference/rendering_state.h"
 
 namespace radivox::reference {
@@ -129,25 +129,17 @@ std::string_view ClosestHits::name(Way way) {
 }
 
 ClosestHits::ClosestHits(const scene::Scene& scene) : impl_(std::make_unique<Impl>()) {
-  impl_->device = rtcNewDevice(nullptr);
-  if (impl_->device == nullptr) throw Error(ErrorCode::Unsupported, "Embree does not start on this processor");
+  impl_->device = makeEmbreeDevice();
   impl_->scene = rtcNewScene(impl_->device);
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   const RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
-  // Vertex is longer than the 16 bytes that Embree loads at once, so the last one may be shared too.
-  static_assert(sizeof(shared::Vertex) >= 16 && offsetof(shared::Vertex, position) == 0);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene.vertices.data(), 0, sizeof(shared::Vertex),
-                             scene.vertices.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene.indices.data(), 0, 3 * sizeof(uint32_t),
-                             scene.triangleCount());
+  shareTriangles(geometry, scene.vertices, scene.indices);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(impl_->scene);
-  const RTCError error = rtcGetDeviceError(impl_->device);
-  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(ErrorCode::OutOfMemory, "out of memory for Embree's hierarchy; choose a smaller scene");
-  if (error != RTC_ERROR_NONE) throw Error(ErrorCode::DeviceFailed, "Embree error " + std::to_string(error) + " while building");
+  expectBuilt(impl_->device, scene.triangleCount());
 }
 
 ClosestHits::~ClosestHits() = default;

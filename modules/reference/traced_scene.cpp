@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/error.h"
 #include "engine/scene/texture.h"
+#include "modules/reference/embree_scene.h"
 
 namespace radivox::reference {
 
@@ -69,12 +69,7 @@ void PathTracer::Impl::listTriangles() {
 
 void PathTracer::Impl::attach(const std::vector<uint32_t>& geometryIndices, bool filtered) {
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Vertex is longer than the 16 bytes that Embree loads at once, so the last one may be shared too.
-  static_assert(sizeof(shared::Vertex) >= 16 && offsetof(shared::Vertex, position) == 0);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, sizeof(shared::Vertex),
-                             vertices.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometryIndices.data(), 0, 3 * sizeof(uint32_t),
-                             geometryIndices.size() / 3);
+  shareTriangles(geometry, vertices, geometryIndices);
   if (filtered) {
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryIntersectFilterFunction(geometry, filterSeen);
@@ -87,8 +82,7 @@ void PathTracer::Impl::attach(const std::vector<uint32_t>& geometryIndices, bool
 
 void PathTracer::Impl::buildHierarchy() {
   const auto start = std::chrono::steady_clock::now();
-  device_ = rtcNewDevice(nullptr);
-  if (device_ == nullptr) throw Error(ErrorCode::Unsupported, "Embree does not start on this processor");
+  device_ = makeEmbreeDevice();
   scene_ = rtcNewScene(device_);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_, indices.size() / 3 <= kMostTrianglesForSplits ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
@@ -114,12 +108,7 @@ void PathTracer::Impl::buildHierarchy() {
   }
   // On one thread: which of two coplanar triangles is met first depends on the hierarchy, and that on how its building was shared out.
   tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
-  const RTCError error = rtcGetDeviceError(device_);
-  if (error == RTC_ERROR_OUT_OF_MEMORY) {
-    throw Error(ErrorCode::OutOfMemory,
-                "out of memory for the ray hierarchy of " + std::to_string(triangleCount) + " triangles; choose a smaller scene");
-  }
-  if (error != RTC_ERROR_NONE) throw Error(ErrorCode::DeviceFailed, "Embree error " + std::to_string(error) + " while building");
+  expectBuilt(device_, triangleCount);
   buildSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

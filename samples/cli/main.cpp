@@ -147,8 +147,7 @@ void addBenchOptions(CLI::App* command, Options& options, BenchOptions& bench) {
   command->add_option("--runs", bench.runs, "of each, whose median counts (default: 5)")->type_name("N");
   command->add_option("--threads", bench.threads, "of Embree; 0 (default): all, as CPU devices take")->type_name("N");
   addRepeated(command, "--out", options.outputs, "figures to write", "FILE.json");
-  command->add_option("--graph", options.graph, "a graph of `radivox info`, or a file (default: the preset's, else clustered_voxel)")
-      ->type_name("NAME|FILE.json");
+  addGraphOption(command, options, kPictureGraph);
   addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter, as in voxelize.resolution=128; may be repeated", "node.param=value");
   command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");

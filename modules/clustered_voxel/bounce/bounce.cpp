@@ -194,7 +194,8 @@ void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& pus
 
 void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_t sweeps) const {
   gpu::Commands& commands = context.commands();
-  const gpu::Buffer& none = context.buffer("indirect");
+  const gpu::Buffer& indirect = context.buffer("indirect");
+  const gpu::Buffer& none = indirect;  // bound where the shader reads nothing
   const bool hasRows = context.has("visibility_entries");
   const gpu::Buffer& received = push.hasEmission != 0 ? context.buffer("received") : none;
   const gpu::Buffer& emission = push.hasEmission != 0 ? context.buffer("mean_emission") : none;
@@ -203,7 +204,7 @@ void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_
   push.senders = counted && (sweeps - 1) % 2 != 0 ? push.clusterCount : 0;
   commands.barrier();
   commands.bind(finishFaces_,
-                {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"), received, none,
+                {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"), received, indirect,
                  context.buffer("face_radiosity"), hasRows ? context.buffer("visibility_row_start") : none,
                  hasRows ? context.buffer("chunk_table") : none, counted ? context.buffer("iterate") : context.buffer("cluster_radiosity"),
                  context.buffer("direct_radiosity"), emission, context.buffer("clusters")});

@@ -1,9 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Each small piece looks for the touching piece that suits its faces best: least Σ D² to that piece's seed, which must accept them all. Pieces
-// with a wall between do not touch.
-// Ties go to the lower piece. A piece that orphans founded has its lowest face for a seed.
+// Each small piece looks for the touching piece that suits its faces best: least Σ D² to that piece's seed, which must accept them all. Ties go to
+// the lower piece; pieces with a wall between do not touch. A piece that orphans founded has its lowest face for a seed.
 #include "clustered_voxel/cluster/cluster_common.glsl"
 #include "clustered_voxel/structure.glsl"
 #include "clustered_voxel/cluster/apart.glsl"
@@ -27,14 +26,14 @@ shared uint work[kClusterGroup];
 shared uint workCount;
 
 void main() {
-  uint face = radivoxItemIndex();
+  uint item = radivoxItemIndex();
   if (gl_LocalInvocationID.x == 0u) workCount = 0u;
   barrier();
-  if (face < push.faceCount) {
-    if (pieces[face] == face && small[4u * face] <= push.mergeLimit)
-      work[atomicAdd(workCount, 1u)] = face;
+  if (item < push.faceCount) {
+    if (pieces[item] == item && small[4u * item] <= push.mergeLimit)
+      work[atomicAdd(workCount, 1u)] = item;
     else
-      targets[face] = kNone;
+      targets[item] = kNone;
   }
   barrier();
   if (gl_LocalInvocationID.x < workCount) {
