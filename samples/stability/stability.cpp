@@ -115,6 +115,7 @@ int runStability(const SuiteOptions& options, const cli::Options& common) {
   addLightCases(cases);
   addGeometryCases(cases);
   addViewCases(cases);
+  addLeakCases(cases);
   const std::vector<Entry> entries = listEntries(options, methods, cases, registry);
   makeFolder(options.out);
   const std::string page = options.out + "/stability.html", csv = options.out + "/stability.csv";

@@ -28,9 +28,12 @@ struct Face {
   uint key;
   float area;      // a_s in h²: Σ area · max(0, n·e_f)
   uint normal;     // n_s, octahedral snorm16 × 2
-  uint position;   // x_s inside the voxel, unorm 10:10:10, x low
+  uint position;   // x_s inside the voxel, unorm 10:10:10, x low; kMadeOfBacks
   uvec2 albedo;    // ρ_s, unorm16: r | g << 16, b | margins << 16, see faceMargins
 };
+
+// Bit of Face::position: no surface shows its front here, and the face is made of the backs of one-sided surfaces.
+RADIVOX_CONST uint kMadeOfBacks = 0x80000000u;
 
 struct Cluster {
   vec3 position;    // area-weighted mean, grid space

@@ -123,6 +123,7 @@ void expectFaces(const VoxelStructures& expected, const VoxelStructures& got) {
     const glm::vec3 n = shared::decodeNormal(have.normal), m = shared::decodeNormal(want.normal);
     EXPECT_GT(glm::dot(n, m), 0.9995f) << "normal of voxel " << coordinate.x << ' ' << coordinate.y << ' ' << coordinate.z;
     EXPECT_LT(glm::length(shared::decodePosition(have.position) - shared::decodePosition(want.position)), 0.02f);
+    EXPECT_EQ(have.position & shared::kMadeOfBacks, want.position & shared::kMadeOfBacks);
     EXPECT_LT(glm::length(shared::decodeAlbedo(have.albedo) - shared::decodeAlbedo(want.albedo)), 0.01f);
     // The device's test of a piece against a slab may let one too many pass; a hair of surface may be lost.
     for (uint32_t end = 0; end < 16; end += 4) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "modules/clustered_voxel/voxelize/grid.h"
 #include "tests/oracles/voxel_oracle.h"
@@ -309,7 +310,12 @@ VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool
   FaceSums sums;
   s.voxelArea.assign(s.voxels.size(), 0.0);
   for (const SoupTriangle& triangle : soup) addTriangle(triangle, s, sums, s.voxelArea);
-  if (bothSides) sums.fronts.merge(sums.backs);  // backs only where there are no fronts
+  std::set<uint32_t> madeOfBacks;
+  if (bothSides) {  // backs only where there are no fronts
+    for (const auto& [key, sum] : sums.backs)
+      if (!sums.fronts.contains(key)) madeOfBacks.insert(key);
+    sums.fronts.merge(sums.backs);
+  }
   s.mask.assign(s.voxels.size(), 0);
   for (const auto& [key, sum] : sums.fronts) s.mask[key >> 3] |= 1u << (key & 7);
   numberFaces(s);
@@ -318,7 +324,8 @@ VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool
     face.area = static_cast<float>(sum.area);
     const glm::dvec3 n = sum.normal / sum.area;
     face.normal = shared::encodeNormal(glm::length(n) < 1e-4 ? shared::faceVector(face.key & 7) : glm::vec3(glm::normalize(n)));
-    face.position = shared::encodePosition(glm::vec3(sum.position / sum.area));
+    face.position =
+        shared::encodePosition(glm::vec3(sum.position / sum.area)) | (madeOfBacks.contains(face.key) ? shared::kMadeOfBacks : 0u);
     face.albedo = shared::withMargins(shared::encodeAlbedo(glm::vec3(sum.albedo / sum.area)), marginsOf(sum.across[0], sum.across[1]));
     s.emission.push_back(glm::vec3(sum.emission / sum.area * std::numbers::pi));
   }

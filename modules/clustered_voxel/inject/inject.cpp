@@ -52,10 +52,11 @@ void Inject::prepare(graph::PrepareContext& context) {
     return;
   }
   if (method_ == Method::Splat) {
-    splat_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
-                                                            .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                            .pushConstantBytes = 12,
-                                                            .constants = {{0, context.traits().soleLight()}}});
+    splat_ =
+        gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
+                                                       .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                       .pushConstantBytes = 12,
+                                                       .constants = {{0, context.traits().soleLight()}}});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
@@ -99,7 +100,7 @@ void Inject::record(graph::RecordContext& context) {
                            context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("shadow_triangle"),
                            context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"),
                            context.buffer("first"), flux, viewTable, status, context.buffer("scene.triangle_materials"),
-                           context.buffer("scene.materials")});
+                           context.buffer("scene.materials"), context.buffer("faces")});
     // First one lane: the table. Then every texel.
     push.faceCount = 0;
     commands.push(push);

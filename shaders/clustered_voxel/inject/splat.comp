@@ -26,6 +26,7 @@ layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; }; 
 layout(set = 0, binding = 13, scalar) buffer StatusBuffer { uint status[]; };
 layout(set = 0, binding = 14, scalar) readonly buffer TriangleMaterialBuffer { uint triangleMaterials[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer MaterialBuffer { Material materials[]; };
+layout(set = 0, binding = 16, scalar) readonly buffer FacesBuffer { Face faces[]; };
 layout(constant_id = 0) const uint kSoleLight = 0xffffffffu;  // the kind of the one light; all ones: there may be more
 layout(push_constant, scalar) uniform Push {
   uint viewCount;
@@ -72,8 +73,9 @@ void addFlux(uint word, uvec2 value) {
   if (high != 0u) atomicAdd(flux[word + 1], high);
 }
 
-// Adds `power`·max(0, n·e_f) to the faces of the voxel at `coord`; the weight that found a face.
-float deposit(ivec3 coord, vec3 n, vec3 power, int exponent) {
+// Adds `power`·max(0, n·e_f) to the faces of the voxel at `coord`; the weight that found a face. Light on a back goes where the face is made of backs:
+// a face that shows fronts does not show it, and beside the edge of a thin-walled room those fronts may lie inside, the lit back outside.
+float deposit(ivec3 coord, vec3 n, vec3 power, int exponent, bool isBack) {
   uint voxel = voxelIndex(coord);
   if (voxel == kNone) return 0.0;
   float found = 0.0;
@@ -82,6 +84,7 @@ float deposit(ivec3 coord, vec3 n, vec3 power, int exponent) {
     uint face = faceIndex(voxel, 2 * k + (n[k] < 0.0 ? 1u : 0u));
     if (face == kNone || w == 0.0) continue;
     found += w * w;
+    if (isBack && (faces[face].position & kMadeOfBacks) == 0u) continue;
     for (uint c = 0; c < 3; ++c) addFlux(face * 6 + 2 * c, toUnits(power[c] * w, exponent));
   }
   return found;
@@ -124,8 +127,10 @@ void main() {
   if (slope == 0.0) return;
   float t = dot(n, a - origin) / slope;
   vec3 p = origin + t * d;
+  bool isBack = false;
   if (slope > 0.0) {  // the side that the light reaches
-    if (grid.singleSided != 0u && (materials[triangleMaterials[triangle]].flags & kMaterialDoubleSided) == 0u) return;
+    isBack = (materials[triangleMaterials[triangle]].flags & kMaterialDoubleSided) == 0u;
+    if (grid.singleSided != 0u && isBack) return;
     n = -n;
   }
   vec3 power = shadowTexelFlux(view, light, d, p);
@@ -136,13 +141,13 @@ void main() {
   int exponent = int(viewTable[0]);
   vec3 q = toGridSpace(grid, p);
   ivec3 coord = ivec3(floor(q));
-  if (deposit(coord, n, power, exponent) > 0.5) return;
+  if (deposit(coord, n, power, exponent, isBack) > 0.5) return;
   // On the border between two voxels rounding may choose the one that has no such face: try the nearer neighbours.
   vec3 inside = q - floor(q);
   for (int k = 0; k < 3; ++k) {
     ivec3 step = ivec3(0);
     step[k] = inside[k] < 0.5 ? -1 : 1;
-    if (min(inside[k], 1.0 - inside[k]) < 0.01 && deposit(coord + step, n, power, exponent) > 0.5) return;
+    if (min(inside[k], 1.0 - inside[k]) < 0.01 && deposit(coord + step, n, power, exponent, isBack) > 0.5) return;
   }
   atomicAdd(status[0], 1u);
 }

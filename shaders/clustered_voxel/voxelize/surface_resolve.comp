@@ -103,7 +103,8 @@ void writeFaces(uint voxel) {
     faces[face].key = voxel << 3 | f;
     faces[face].area = fixedToFloat(area);
     faces[face].normal = encodeNormal(normal);
-    faces[face].position = encodePosition(meanOf(positionSums[3u * slot], positionSums[3u * slot + 1u], positionSums[3u * slot + 2u], scale));
+    vec3 position = meanOf(positionSums[3u * slot], positionSums[3u * slot + 1u], positionSums[3u * slot + 2u], scale);
+    faces[face].position = encodePosition(position) | (shows ? 0u : kMadeOfBacks);
     uvec2 albedo = encodeAlbedo(meanOf(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u], scale));
     faces[face].albedo = withMargins(albedo, marginsOf(footprints[slot]));
     if (kEmission) {
