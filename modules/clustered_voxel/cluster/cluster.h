@@ -16,6 +16,8 @@
 // shaders/clustered_voxel/cluster/apart.glsl); each face is within `angle` of the normal of one common seed, and so within 2 · angle of
 // the cluster's mean. Faces that no seed accepts form clusters of their own (the paper drops them). Clusters of at most `merge` faces join a
 // touching cluster whose seed accepts all of them, if there is one.
+//
+// Two rounds are the default: in Sponza ten give the same error (34.44 against 34.45 dB, bias 0.995 either way) for twice the time.
 #pragma once
 
 #include <memory>
@@ -50,7 +52,7 @@ class Cluster : public graph::Node {
   float angleDegrees_ = 35.f;
   float spaceWeight_ = 1.f;
   float normalWeight_ = 1.f;
-  uint32_t iterations_ = 10;
+  uint32_t iterations_ = 2;
   float stopFraction_ = 0.001f;
   uint32_t merge_ = shared::kMostMergeFaces;
   params::Table table_;
