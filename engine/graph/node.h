@@ -32,7 +32,7 @@ enum class Access : uint8_t {
   Read,      ///< input
   Write,     ///< output; all of it, or (persistent) parts of it, new
   Modify,    ///< input and output in one: the old version of the resource is dead to everybody else
-  Scratch,   ///< private to the run; contents undefined at start; memory is shared with other nodes' scratch
+  Scratch,   ///< private to the run; contents undefined at start; memory is shared with other nodes' scratch and later outputs
   ReadBack,  ///< output in host memory, valid after the frame's work is done
 };
 
