@@ -10,6 +10,7 @@ layout(push_constant, scalar) uniform Push {
   uint clusterCount;
   uint faceCount;
   uvec2 matrix;  // device address of the entries (fill only)
+  uint weightBits;
 } push;
 layout(set = 0, binding = 0, scalar) readonly buffer RowStart { uint rowStart[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer ChunkTable { uvec2 chunkTable[]; };
