@@ -77,7 +77,7 @@ class TransferTest : public oracles::GpuTest {
     s.faces = c.faces;
     s.voxels.assign(c.faces.size(), 0);
     for (uint32_t i = 0; i < s.faces.size(); ++i) s.faces[i].key = i << 3;
-    const auto packed = oracle::packRows(c.rows);
+    const auto packed = oracle::packRows(c.rows, c.clusterCount + static_cast<uint32_t>(c.faces.size()));
     std::vector<gpu::Buffer> chunks;
     std::vector<uint64_t> table;
     for (const auto& chunk : packed.chunks) {

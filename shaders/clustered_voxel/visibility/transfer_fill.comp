@@ -126,11 +126,9 @@ void main() {
       for (uint i = lane; i < cluster.faceCount; i += kLanes) {
         uint s = members[cluster.firstMember + i];
         uint unit = weightUnits(weightOf(s, byArea), greatest);
-        uint slot = rowSlot(s);
-        uint rowEnd = rowStart[slot + 1u];
-        Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
-        for (uint e = rowStart[slot]; e < rowEnd; ++e) {
-          uint entry = entries.words[e];
+        VisibilityRow seen = rowOf(s);
+        while (hasEntry(seen)) {
+          uint entry = nextEntry(seen, push.clusterCount + push.faceCount);
           uvec2 share = timesCount(unit, countOf(entry));
           uint column = columnOf(entry);
           if (addsUp) {
