@@ -138,7 +138,7 @@ void FaceProbe::traceRays(const Ports& ports, PointedFace& pointed) {
     commands.bind(pipeline_,
                   {*ports.buffer("clustered_voxel.voxelize", "grid"), *ports.buffer("clustered_voxel.voxelize", "occupancy"),
                    *ports.buffer("clustered_voxel.index", "rank"), *ports.buffer("clustered_voxel.index", "voxels"),
-                   *ports.buffer("clustered_voxel.index", "distance"), *ports.buffer(kVisibility, "planes"),
+                   *ports.buffer("clustered_voxel.index", "distance"), *ports.grown(kVisibility, "planes").at(0),
                    *ports.buffer("clustered_voxel.faces", "first"), *ports.buffer("clustered_voxel.surface", "faces"),
                    *ports.buffer(kVisibility, "plane_extras"), directions_, *ports.buffer("clustered_voxel.cluster", "labels"), ends_});
     commands.push(push);

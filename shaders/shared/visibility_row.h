@@ -1,5 +1,5 @@
 // Visibility rows as bits. Entries follow each other by ascending id; of each the distance to the id before and the count of rays, both in as
-// many bits as they take: some 18 of the 32 of a word, since rows see what lies together. Rows are read from the front, as all readers do.
+// many bits as they take: some 14 of the 32 of a word in Sponza, since rows see what lies together. Rows are read from the front, as all readers do.
 //   5 bits: width w of the distance − 1, then its w − 1 bits below the highest; the count in Elias' gamma code, zeros first.
 // Ids of misses come right after those of faces.
 #ifndef RADIVOX_SHADERS_SHARED_VISIBILITY_ROW_H

@@ -101,7 +101,7 @@ void RayBench::record(gpu::Commands& commands, const gpu::Pipeline& pipeline, co
                              buffer("rank"),
                              buffer("voxels"),
                              buffer("distance"),
-                             buffer("planes"),
+                             grown("planes"),
                              buffer("first"),
                              buffer("faces"),
                              grown("clearance"),

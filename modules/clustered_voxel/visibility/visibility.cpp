@@ -84,8 +84,7 @@ void Visibility::declare(graph::Declaration& d) {
   d.write("entries", {}, "clusters and faces that rays met, and how many did: shared/visibility_row.h").growable = true;
   d.write("clearance", {}, "u8 per voxel and rim: half-size of the empty cube around it").growable = true;
   d.write("clearance_work", {}, "between two passes; freed at once").growable = true;
-  // Planes are as many as faces at most, and a voxel without faces has the place of one.
-  d.write("planes", Shape::buffer(8, faces + 1), "what rays are stopped by: shared/voxel_plane.h");
+  d.write("planes", {}, "what rays are stopped by: shared/voxel_plane.h").growable = true;
   d.write("plane_extras", Shape::buffer(4, Extent::of("voxels")), "where the planes of a voxel after its first are");
   d.write("weights", Shape::buffer(4, faces), "how much of each face others see");
   d.publishCount("entries", "", 0);
@@ -95,7 +94,7 @@ void Visibility::declare(graph::Declaration& d) {
   d.scratch("hits", Shape::buffer(4, rows * rays_), "what each ray of the chunk hit");
   d.scratch("table", Shape::buffer(4, rows << tableBits(rays_)), "hash table a row");
   d.scratch("offsets", Shape::buffer(4, rows + 1), "bits a row, then their exclusive sums");
-  d.scratch("total", Shape::buffer(4, 2), "bits of the chunk");
+  d.scratch("total", Shape::buffer(4, 2), "bits of the chunk; planes beyond the first of their voxels");
   d.scratch("entry_count", Shape::buffer(4, 1), "entries of all chunks so far");
   // Scan::scratchBytes is a word a block, on every level.
   d.scratch("plane_scan", Shape::buffer(4, Extent::of("voxels") / 512 + 1024), "scan");
@@ -156,10 +155,10 @@ uint32_t Visibility::rowCount(graph::RecordContext& context, uint32_t chunk) con
   return static_cast<uint32_t>(std::min<uint64_t>(kRowsPerChunk, context.count("faces") - uint64_t{chunk} * kRowsPerChunk));
 }
 
-// Step 0 learns the grid; step 1 + k fills chunk k − 1 and traces chunk k.
+// Step 0 learns the grid and counts planes; step 1 makes them; step 1 + k fills chunk k − 1 and traces chunk k.
 uint32_t Visibility::stepCount(graph::RecordContext& context) {
   const uint32_t chunks = chunkCount(context);
-  return chunks == 0 ? 1 : chunks + 2;
+  return chunks == 0 ? 2 : chunks + 2;
 }
 
 void Visibility::record(graph::RecordContext& context) {
@@ -169,12 +168,13 @@ void Visibility::record(graph::RecordContext& context) {
     context.commands().fill(context.buffer("chunk_table"), 0);
     context.commands().fill(context.buffer("weights"), 0);
     context.commands().fill(context.buffer("entry_count"), 0);
+    countPlanes(context);
     return;
   }
   context.commands().barrier();
   if (step == 1) {
-    recordPlanes(context);
-    if (usesClearance()) recordClearance(context);
+    if (!context.grown("planes").empty()) recordPlanes(context);
+    if (!context.grown("clearance").empty()) recordClearance(context);
   }
   if (step > 1) recordFill(context, step - 2);
   if (step <= chunkCount(context)) recordTrace(context, step - 1);
@@ -220,24 +220,41 @@ void Visibility::begin(graph::RecordContext& context) {
   }
   context.clearGrown("entries");
   context.clearGrown("clearance");
+  context.clearGrown("planes");
   start_ = std::chrono::steady_clock::now();
   clearanceTooLarge_ = maxRange_ != 0 && clearanceBytes(grid_) > maxRange_;
+  const uint64_t voxels = context.count("voxels");
+  if (voxels == 0) return;
+  uint32_t extras[2];
+  const std::vector<std::byte> total = context.readBuffer("total", 0, sizeof(extras));
+  std::memcpy(extras, total.data(), sizeof(extras));
+  context.grow("planes", 8 * (voxels + extras[0]));
   if (!usesClearance() || chunkCount(context) == 0) return;
   context.grow("clearance", clearanceBytes(grid_));
   context.grow("clearance_work", clearanceBytes(grid_));
 }
 
+void Visibility::countPlanes(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto voxels = static_cast<uint32_t>(context.count("voxels"));
+  if (voxels == 0) return;
+  const gpu::Buffer& extras = context.buffer("plane_extras");
+  const gpu::Buffer& none = context.buffer("grid");
+  commands.bind(countPlanes_, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), none, extras});
+  commands.push(voxels);
+  commands.dispatchItems(voxels, 64);
+  commands.barrier();
+  scan_->scan(commands, extras, extras, voxels, context.buffer("plane_scan"), &context.buffer("total"));
+}
+
 void Visibility::recordPlanes(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const auto voxels = static_cast<uint32_t>(context.count("voxels"));
-  const gpu::Buffer& extras = context.buffer("plane_extras");
-  for (const gpu::Pipeline* pipeline : {&countPlanes_, &planes_}) {
-    commands.bind(*pipeline, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), context.buffer("planes"), extras});
-    commands.push(voxels);
-    commands.dispatchItems(voxels, 64);
-    commands.barrier();
-    if (pipeline == &countPlanes_) scan_->scan(commands, extras, extras, voxels, context.buffer("plane_scan"));
-  }
+  commands.bind(planes_, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), *context.grown("planes").at(0),
+                          context.buffer("plane_extras")});
+  commands.push(voxels);
+  commands.dispatchItems(voxels, 64);
+  commands.barrier();
 }
 
 void Visibility::recordClearance(graph::RecordContext& context) {
@@ -294,7 +311,7 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
                                                  context.buffer("rank"),
                                                  context.buffer("voxels"),
                                                  context.buffer("distance"),
-                                                 context.buffer("planes"),
+                                                 *context.grown("planes").at(0),
                                                  context.buffer("first"),
                                                  context.buffer("faces"),
                                                  clearance,

@@ -6,12 +6,12 @@
 //         entries+ bits                               rows, a buffer a chunk: shared/visibility_row.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
 //         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
-//         planes uvec2 × F, plane_extras u32 × V      what rays are stopped by (shared/voxel_plane.h)
+//         planes+ uvec2, plane_extras u32 × V         what rays are stopped by (shared/voxel_plane.h)
 //         weights u32 × F                             Σ a over the rays that hit the face from beyond 2 h, in 1/64 h²; 0: nobody sees it
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
 // cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
-//         of scratch; about 18 bits an entry; one byte a voxel of the grid (twice while it is made)
+//         of scratch; about 14 bits an entry; one byte a voxel of the grid (twice while it is made)
 // source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
 //
 // Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. With triangles, rays start on pieces of the
@@ -58,6 +58,7 @@ class Visibility : public graph::Node {
   uint32_t rowCount(graph::RecordContext& context, uint32_t chunk) const;
   bool usesClearance() const { return traversal_ == Traversal::Dda && skip_ == Skip::Clearance && !clearanceTooLarge_; }
   void begin(graph::RecordContext& context);
+  void countPlanes(graph::RecordContext& context);
   void recordPlanes(graph::RecordContext& context);
   void recordClearance(graph::RecordContext& context);
   void recordTrace(graph::RecordContext& context, uint32_t chunk);
