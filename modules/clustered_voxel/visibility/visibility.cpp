@@ -66,13 +66,15 @@ void Visibility::declare(graph::Declaration& d) {
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster of each face");
-  for (const char* name : {"triangle_first", "triangle_ids", "pieces", "scene.vertices", "scene.indices", "scene.triangle_materials",
-                           "scene.materials", "scene.textures"}) {
-    graph::Port& port = d.read(name, "triangles of each voxel");
+  const auto leaveOut = [this](graph::Port& port) {
     port.optional = true;
     port.unwanted = triangles_ == 0.f;
     port.unwantedReason = "visibility.triangles=0";
-  }
+  };
+  for (const char* name : {"triangle_first", "triangle_ids", "scene.vertices", "scene.indices", "scene.triangle_materials",
+                           "scene.materials", "scene.textures"})
+    leaveOut(d.read(name, "triangles of each voxel"));
+  leaveOut(d.modify("pieces", "where rays start on the triangles of each voxel; freed once all are traced"));
   graph::Port& corners = d.read("corners", "corners of triangles");
   corners.optional = true;
   corners.unwanted = triangles_ == 0.f || d.traits.triangleCount > shared::kMostCornerTriangles;
@@ -193,6 +195,7 @@ void Visibility::stepDone(graph::RecordContext& context) {
     context.reportProgress(static_cast<double>(step) / chunks);
   }
   if (step < chunks || (chunks > 0 && step == chunks)) return;
+  if (context.has("pieces")) context.clearGrown("pieces");
   uint32_t entryCount = 0;
   const std::vector<std::byte> raw = context.readBuffer("entry_count", 0, sizeof(entryCount));
   std::memcpy(&entryCount, raw.data(), sizeof(entryCount));
