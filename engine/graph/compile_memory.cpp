@@ -1,6 +1,7 @@
 // Resources with version chains and lifetimes; aliasing of scratch memory; barriers.
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "engine/graph/compile.h"
 
@@ -99,6 +100,47 @@ uint64_t guessBytes(const Shape& shape, const Counts& known) {
   return shape.width.evaluate(counts).value_or(0) * shape.height.evaluate(counts).value_or(0) * shape.layers.evaluate(counts).value_or(0);
 }
 
+/// Steps that run again whenever step `first` has run, even after a frame that broke off between: what reads its outputs, and so on.
+std::vector<char> followers(const Plan& plan, uint32_t first) {
+  std::vector<char> follows(plan.steps.size(), 0);
+  std::set<std::pair<ResourceId, uint32_t>> renewed;
+  for (uint32_t i = first; i < plan.steps.size(); ++i) {
+    const std::vector<PlannedPort>& ports = plan.steps[i].ports;
+    follows[i] = i == first || std::any_of(ports.begin(), ports.end(), [&](const PlannedPort& port) {
+                   const bool reads = port.access == Access::Read || port.access == Access::Modify;
+                   return reads && renewed.count({port.resource, port.version - (port.access == Access::Modify ? 1 : 0)}) != 0;
+                 });
+    if (follows[i] == 0) continue;
+    for (const PlannedPort& port : ports) {
+      if (port.access == Access::Write || port.access == Access::Modify) renewed.emplace(port.resource, port.version);
+    }
+  }
+  follows[first] = 0;
+  return follows;
+}
+
+/// Until a follower has written its output, nobody may read that output's memory: scratch may lie there.
+void lend(Plan& plan, uint32_t step) {
+  const std::vector<char> follows = followers(plan, step);
+  std::set<ResourceId> lent;
+  for (const PlannedPort& port : plan.steps[step].ports) {
+    if (port.access != Access::Scratch || port.resource == kNoResource) continue;
+    PlannedResource& scratch = plan.resources[port.resource];
+    for (uint32_t i = step + 1; i < plan.steps.size() && scratch.lender == kNoResource; ++i) {
+      if (follows[i] == 0) continue;
+      for (const PlannedPort& later : plan.steps[i].ports) {
+        if (later.access != Access::Write || later.resource == kNoResource || lent.count(later.resource) != 0) continue;
+        const PlannedResource& output = plan.resources[later.resource];
+        const bool plain = output.shape.kind == ResourceKind::Buffer && !output.persistent && !output.growable && !output.hostVisible;
+        if (!plain || output.shape.print() != scratch.shape.print()) continue;
+        scratch.lender = later.resource;
+        lent.insert(later.resource);
+        break;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Plan layOut(const Draft& draft, const std::vector<uint32_t>& order, const std::vector<uint32_t>& segments) {
@@ -145,9 +187,11 @@ void alias(Plan& plan, const Counts& knownCounts) {
   };
   std::vector<Slot> slots;
   for (uint32_t i = 0; i < plan.steps.size(); ++i) {
+    lend(plan, i);
     std::vector<ResourceId> scratch;
     for (const PlannedPort& port : plan.steps[i].ports) {
-      if (port.access == Access::Scratch && port.resource != kNoResource) scratch.push_back(port.resource);
+      if (port.access != Access::Scratch || port.resource == kNoResource) continue;
+      if (plan.resources[port.resource].lender == kNoResource) scratch.push_back(port.resource);
     }
     // Largest first, so that the large ones of different nodes meet in one slot.
     std::stable_sort(scratch.begin(), scratch.end(), [&](ResourceId a, ResourceId b) {
@@ -177,7 +221,9 @@ void synchronize(Plan& plan) {
     for (const PlannedPort& port : step.ports) {
       if (port.resource == kNoResource) continue;
       const PlannedResource& resource = plan.resources[port.resource];
-      State& state = resource.scratch ? states[{true, resource.aliasSlot}] : states[{false, port.resource}];
+      const bool inSlot = resource.aliasSlot != kNoSlot;
+      const ResourceId memory = resource.lender != kNoResource ? resource.lender : port.resource;
+      State& state = states[{inSlot, inSlot ? resource.aliasSlot : memory}];
       if (port.access == Access::Read) {
         if (state.writeUse != 0 && (state.readUse & port.use) != port.use) {
           step.barriers.push_back({port.resource, state.writeUse, port.use, true, false});

@@ -32,7 +32,7 @@ Executor::Impl::Impl(gpu::Device& device_, Graph& graph_, Plan plan_, const scen
   uint32_t slotCount = 0;
   for (ResourceId id = 0; id < resources.size(); ++id) {
     resources[id].versions.assign(plan.resources[id].versionCount, 0);
-    if (plan.resources[id].scratch) slotCount = std::max(slotCount, plan.resources[id].aliasSlot + 1);
+    if (plan.resources[id].aliasSlot != kNoSlot) slotCount = std::max(slotCount, plan.resources[id].aliasSlot + 1);
   }
   slots.resize(slotCount);
   steps.resize(plan.steps.size());

@@ -65,7 +65,7 @@ bool StepContext::changed(std::string_view inputPort) const {
 ResourceState& StepContext::growable(std::string_view port) {
   const PlannedPort& planned = impl_.plan.steps[step_].ports[portIndex(port)];
   const ResourceId id = resource(port);
-  if (planned.access != Access::Write || !impl_.plan.resources[id].growable) {
+  if (planned.access == Access::Read || !impl_.plan.resources[id].growable) {
     misuse(impl_.nodeName(step_), "grows port " + std::string(port) + ", which it did not declare as a growable output");
   }
   return impl_.resources[id];

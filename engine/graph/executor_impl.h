@@ -120,6 +120,9 @@ struct Executor::Impl {
   void findStale(bool nextFrame);
 
   // Memory.
+  /// The resource that holds it: itself, or the output whose memory a scratch resource is lent.
+  ResourceId memoryOf(ResourceId id) const { return plan.resources[id].lender != kNoResource ? plan.resources[id].lender : id; }
+  void allocateOutput(ResourceId id, uint32_t use);
   void allocateOutputs(uint32_t step);
   void allocateScratch(const std::vector<uint32_t>& batchSteps);
   void freeScratch(const std::vector<uint32_t>& batchSteps);

@@ -60,34 +60,38 @@ gpu::ImageInfo Executor::Impl::imageInfo(const std::string& name, const Shape& s
 void Executor::Impl::allocateOutputs(uint32_t step) {
   for (const PlannedPort& port : plan.steps[step].ports) {
     if (port.resource == kNoResource || (port.access != Access::Write && port.access != Access::ReadBack)) continue;
-    const PlannedResource& planned = plan.resources[port.resource];
-    ResourceState& state = resources[port.resource];
-    if (planned.growable) {
-      state.allocated = true;
-      continue;
-    }
-    if (planned.shape.kind == ResourceKind::Buffer) {
-      const uint64_t bytes = bufferBytes(planned.name, planned.shape);
-      if (state.allocated && state.bytes == bytes) continue;
-      checkBuffer(planned.name, bytes, (port.use & (UseCompute | UseRaster)) != 0);
-      state.buffer = gpu::Buffer();  // the old one first: both together may not fit
-      state.allocated = false;
-      state.buffer = gpu::Buffer(device, planned.name, bytes, planned.hostVisible ? gpu::MemoryKind::ReadBack : gpu::MemoryKind::Device);
-      state.bytes = bytes;
-    } else {
-      const gpu::ImageInfo info = imageInfo(planned.name, planned.shape);
-      const uint64_t extent[3] = {info.width, info.height, info.layers};
-      if (state.allocated && std::equal(extent, extent + 3, state.extent)) continue;
-      state.image = gpu::Image();
-      state.allocated = false;
-      state.image = gpu::Image(device, planned.name, info);
-      std::copy(extent, extent + 3, state.extent);
-      state.bytes = gpu::Image::requirements(device, info).size;
-    }
-    state.allocated = true;
-    state.mustZero = planned.persistent;
-    state.access = {};
+    allocateOutput(port.resource, port.use);
   }
+}
+
+void Executor::Impl::allocateOutput(ResourceId id, uint32_t use) {
+  const PlannedResource& planned = plan.resources[id];
+  ResourceState& state = resources[id];
+  if (planned.growable) {
+    state.allocated = true;
+    return;
+  }
+  if (planned.shape.kind == ResourceKind::Buffer) {
+    const uint64_t bytes = bufferBytes(planned.name, planned.shape);
+    if (state.allocated && state.bytes == bytes) return;
+    checkBuffer(planned.name, bytes, (use & (UseCompute | UseRaster)) != 0);
+    state.buffer = gpu::Buffer();  // the old one first: both together may not fit
+    state.allocated = false;
+    state.buffer = gpu::Buffer(device, planned.name, bytes, planned.hostVisible ? gpu::MemoryKind::ReadBack : gpu::MemoryKind::Device);
+    state.bytes = bytes;
+  } else {
+    const gpu::ImageInfo info = imageInfo(planned.name, planned.shape);
+    const uint64_t extent[3] = {info.width, info.height, info.layers};
+    if (state.allocated && std::equal(extent, extent + 3, state.extent)) return;
+    state.image = gpu::Image();
+    state.allocated = false;
+    state.image = gpu::Image(device, planned.name, info);
+    std::copy(extent, extent + 3, state.extent);
+    state.bytes = gpu::Image::requirements(device, info).size;
+  }
+  state.allocated = true;
+  state.mustZero = planned.persistent;
+  state.access = {};
 }
 
 void Executor::Impl::allocateScratch(const std::vector<uint32_t>& batchSteps) {
@@ -99,7 +103,13 @@ void Executor::Impl::allocateScratch(const std::vector<uint32_t>& batchSteps) {
   const auto forEach = [&](auto&& visit) {
     for (const uint32_t step : batchSteps) {
       for (const PlannedPort& port : plan.steps[step].ports) {
-        if (port.resource != kNoResource && port.access == Access::Scratch) visit(port);
+        if (port.resource == kNoResource || port.access != Access::Scratch) continue;
+        const ResourceId lender = plan.resources[port.resource].lender;
+        if (lender != kNoResource) {
+          allocateOutput(lender, port.use);
+        } else {
+          visit(port);
+        }
       }
     }
   };
@@ -153,7 +163,7 @@ void Executor::Impl::allocateScratch(const std::vector<uint32_t>& batchSteps) {
 
 void Executor::Impl::releaseSlot(uint32_t slot) {
   for (ResourceId id = 0; id < resources.size(); ++id) {
-    if (!plan.resources[id].scratch || plan.resources[id].aliasSlot != slot) continue;
+    if (plan.resources[id].aliasSlot != slot) continue;
     resources[id].buffer = gpu::Buffer();
     resources[id].image = gpu::Image();
     resources[id].allocated = false;
@@ -165,7 +175,8 @@ void Executor::Impl::releaseSlot(uint32_t slot) {
 void Executor::Impl::freeScratch(const std::vector<uint32_t>& batchSteps) {
   for (const uint32_t step : batchSteps) {
     for (const PlannedPort& port : plan.steps[step].ports) {
-      if (port.resource != kNoResource && port.access == Access::Scratch) releaseSlot(plan.resources[port.resource].aliasSlot);
+      if (port.resource == kNoResource || plan.resources[port.resource].aliasSlot == kNoSlot) continue;
+      releaseSlot(plan.resources[port.resource].aliasSlot);
     }
   }
 }
@@ -173,7 +184,7 @@ void Executor::Impl::freeScratch(const std::vector<uint32_t>& batchSteps) {
 bool Executor::Impl::isAllocated(uint32_t step) const {
   const auto& ports = plan.steps[step].ports;
   return std::all_of(ports.begin(), ports.end(), [&](const PlannedPort& port) {
-    return port.resource == kNoResource || plan.resources[port.resource].imported || resources[port.resource].allocated;
+    return port.resource == kNoResource || plan.resources[port.resource].imported || resources[memoryOf(port.resource)].allocated;
   });
 }
 

@@ -97,7 +97,7 @@ void fullBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 to, VkAccessFla
 }  // namespace
 
 const gpu::Buffer& Executor::Impl::bufferOf(ResourceId id) const {
-  return plan.resources[id].imported ? *resources[id].importedBuffer : resources[id].buffer;
+  return plan.resources[id].imported ? *resources[id].importedBuffer : resources[memoryOf(id)].buffer;
 }
 
 gpu::Image& Executor::Impl::imageOf(ResourceId id) {
@@ -105,7 +105,8 @@ gpu::Image& Executor::Impl::imageOf(ResourceId id) {
 }
 
 AccessState& Executor::Impl::accessOf(ResourceId id) {
-  return plan.resources[id].scratch ? slots[plan.resources[id].aliasSlot].access : resources[id].access;
+  const uint32_t slot = plan.resources[id].aliasSlot;
+  return slot != kNoSlot ? slots[slot].access : resources[memoryOf(id)].access;
 }
 
 void Executor::Impl::synchronizeStep(VkCommandBuffer commands, uint32_t step) {

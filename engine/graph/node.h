@@ -32,7 +32,7 @@ enum class Access : uint8_t {
   Read,      ///< input
   Write,     ///< output; all of it, or (persistent) parts of it, new
   Modify,    ///< input and output in one: the old version of the resource is dead to everybody else
-  Scratch,   ///< private to the run; contents undefined at start; memory is shared with other nodes' scratch
+  Scratch,   ///< private to the run; contents undefined at start; memory is shared with other nodes' scratch and later outputs
   ReadBack,  ///< output in host memory, valid after the frame's work is done
 };
 
@@ -133,7 +133,7 @@ class RecordContext {
   // Only in host-paced nodes, only from stepDone / at the start of record of a step:
   /// Appends a device buffer of `bytes` to growable port `port`; earlier ones stay. Returns it. Throws OutOfMemory.
   virtual const gpu::Buffer& grow(std::string_view port, uint64_t bytes) = 0;
-  /// Frees all buffers of a growable port (call in step 0 before growing).
+  /// Frees all buffers of a growable port: in step 0 before growing, or at the end of a node that modifies what only it needed.
   virtual void clearGrown(std::string_view port) = 0;
   /// Buffers of a growable port, own or input, in the order they were grown.
   virtual std::vector<const gpu::Buffer*> grown(std::string_view port) const = 0;

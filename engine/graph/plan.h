@@ -10,6 +10,7 @@ namespace radivox::graph {
 
 using ResourceId = uint32_t;
 constexpr ResourceId kNoResource = 0xffffffffu;
+constexpr uint32_t kNoSlot = 0xffffffffu;
 
 /// One version chain shares one resource: a Modify port continues its input's.
 struct PlannedResource {
@@ -26,7 +27,9 @@ struct PlannedResource {
   uint32_t firstUse = 0;  ///< positions in Plan::steps, inclusive
   uint32_t lastUse = 0;
   /// Scratch resources with the same alias slot share memory (their lifetimes do not meet).
-  uint32_t aliasSlot = 0xffffffffu;
+  uint32_t aliasSlot = kNoSlot;
+  /// Scratch of one shape with a later output that must be written anew whenever this is: it is that output's memory, and has no slot.
+  ResourceId lender = kNoResource;
 };
 
 struct PlannedPort {

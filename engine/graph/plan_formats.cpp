@@ -99,7 +99,8 @@ std::string Plan::printJson(const Counts& counts) const {
     r["host_visible"] = resource.hostVisible;
     r["first_use"] = resource.firstUse;
     r["last_use"] = resource.lastUse;
-    r["alias_slot"] = resource.scratch ? Json(resource.aliasSlot) : Json(nullptr);
+    r["alias_slot"] = resource.aliasSlot != kNoSlot ? Json(resource.aliasSlot) : Json(nullptr);
+    r["memory_of"] = resource.lender != kNoResource ? Json(resources[resource.lender].name) : Json(nullptr);
     json["resources"].push_back(std::move(r));
   }
   json["left_out"] = Json::array();

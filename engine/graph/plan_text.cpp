@@ -100,6 +100,7 @@ Totals totals(const Plan& plan, const Counts& counts) {
     const uint64_t known = bytes.value_or(0);
     if (resource.scratch) {
       sums.scratchUnshared += known;
+      if (resource.lender != kNoResource) continue;
       auto& [members, largest] = slots[resource.aliasSlot];
       ++members;
       largest = std::max(largest, known);
@@ -118,7 +119,7 @@ Totals totals(const Plan& plan, const Counts& counts) {
 std::map<uint32_t, std::vector<ResourceId>> slotMembers(const Plan& plan) {
   std::map<uint32_t, std::vector<ResourceId>> members;
   for (ResourceId id = 0; id < plan.resources.size(); ++id) {
-    if (plan.resources[id].scratch) members[plan.resources[id].aliasSlot].push_back(id);
+    if (plan.resources[id].aliasSlot != kNoSlot) members[plan.resources[id].aliasSlot].push_back(id);
   }
   return members;
 }
@@ -149,13 +150,15 @@ std::string printPort(const Plan& plan, const PlannedPort& port, const Counts& c
   text += resource.growable ? ": grows" : ": " + resource.shape.print() + " = " + printBytes(shapeBytes(resource.shape, counts));
   if (resource.persistent) text += ", persistent";
   if (resource.output && resource.versionCount == 1) text += ", output";
-  if (resource.scratch) text += ", slot " + std::to_string(resource.aliasSlot);
+  if (resource.aliasSlot != kNoSlot) text += ", slot " + std::to_string(resource.aliasSlot);
+  if (resource.lender != kNoResource) text += ", in " + plan.resources[resource.lender].name;
   return text + "\n";
 }
 
 std::string printBarrier(const Plan& plan, const PlannedBarrier& barrier) {
-  std::string name = plan.resources[barrier.resource].name;
-  if (plan.resources[barrier.resource].scratch) name = "slot " + std::to_string(plan.resources[barrier.resource].aliasSlot);
+  const PlannedResource& resource = plan.resources[barrier.resource];
+  std::string name = resource.lender != kNoResource ? plan.resources[resource.lender].name : resource.name;
+  if (resource.aliasSlot != kNoSlot) name = "slot " + std::to_string(resource.aliasSlot);
   return "barrier " + name + ": " + (barrier.writeBefore ? "write " : "read ") + printUse(barrier.fromUse) + " → " +
          (barrier.writeAfter ? "write " : "read ") + printUse(barrier.toUse) + "\n";
 }

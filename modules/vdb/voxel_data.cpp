@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "shaders/shared/id_colour.h"
+#include "shaders/shared/visibility_row.h"
 
 namespace radivox::vdb {
 
@@ -146,23 +147,23 @@ void VoxelData::countRows() {
   for (uint64_t chunk = 0; chunk < chunkCount; ++chunk) {
     const uint64_t firstFace = chunk * kRows, end = std::min<uint64_t>(count, firstFace + kRows);
     const uint32_t* starts = rowStart.data() + chunk * (kRows + 1);
-    const auto entries = gpu::downloadAs<uint32_t>(*buffers_.device, *chunks[chunk], starts[end - firstFace]);
+    const auto words = gpu::downloadAs<uint32_t>(*buffers_.device, *chunks[chunk], chunks[chunk]->bytes() / 4);
     for (uint64_t s = firstFace; s < end; ++s) {
       const uint32_t voxel = faces_[s].key >> 3;
       uint32_t rays = 0, misses = 0;
-      for (uint32_t e = starts[s - firstFace]; e < starts[s - firstFace + 1]; ++e) {
-        const uint32_t id = entries[e] & shared::kEntryIdMask, hits = (entries[e] >> 24) + 1;
+      const auto idCount = static_cast<uint32_t>(clusterCount + count);
+      shared::forEachRowEntry(words.data(), starts[s - firstFace], starts[s - firstFace + 1], idCount, [&](uint32_t id, uint32_t hits) {
         rays += hits;
         if (id >= shared::kMissBase) {
           if (id < shared::kMissBase + shared::kFaceCount) misses += hits;
-          continue;
+          return;
         }
         const uint32_t cluster = id < clusterCount ? id : labels.at(id - clusterCount);
         if (faceSeen[cluster] != s) ++sums.visible[s];
         if (voxelSeen[cluster] != voxel) ++sums.voxelVisible[voxel];
         faceSeen[cluster] = static_cast<uint32_t>(s);
         voxelSeen[cluster] = voxel;
-      }
+      });
       sums.misses[s] = rays > 0 ? static_cast<float>(misses) / static_cast<float>(rays) : 0.f;
     }
   }

@@ -4,6 +4,7 @@
 
 #include "modules/clustered_voxel/visibility/directions.h"
 #include "shaders/clustered_voxel/visibility/visibility.h"
+#include "shaders/shared/visibility_row.h"
 
 namespace radivox::viewer {
 
@@ -91,12 +92,13 @@ void FaceProbe::readRow(const Ports& ports, PointedFace& pointed) {
   const auto begin = readOne<uint32_t>(device_, rowStart, slot), end = readOne<uint32_t>(device_, rowStart, slot + 1);
   const std::vector<const gpu::Buffer*> chunks = ports.grown(kVisibility, "entries");
   if (chunk >= chunks.size() || begin >= end) return;
-  const std::vector<std::byte> raw = gpu::download(device_, *chunks[chunk], uint64_t{begin} * 4, uint64_t{end - begin} * 4);
+  const uint32_t firstWord = begin / 32, endWord = (end + 31) / 32 + shared::kRowPadding;
+  const std::vector<std::byte> raw = gpu::download(device_, *chunks[chunk], uint64_t{firstWord} * 4, uint64_t{endWord - firstWord} * 4);
+  std::vector<uint32_t> words(endWord - firstWord);
+  std::memcpy(words.data(), raw.data(), raw.size());
   const auto clusterCount = static_cast<uint32_t>(ports.count("clusters"));
-  for (size_t i = 0; i * 4 < raw.size(); ++i) {
-    uint32_t entry = 0;
-    std::memcpy(&entry, raw.data() + 4 * i, 4);
-    const uint32_t id = entry & shared::kEntryIdMask, rays = (entry >> 24) + 1;
+  const auto idCount = static_cast<uint32_t>(clusterCount + ports.count("faces"));
+  shared::forEachRowEntry(words.data(), begin - firstWord * 32, end - firstWord * 32, idCount, [&](uint32_t id, uint32_t rays) {
     pointed.rayCount += rays;
     if (id == shared::kAbsorbed) {
       pointed.absorbed += rays;
@@ -107,7 +109,7 @@ void FaceProbe::readRow(const Ports& ports, PointedFace& pointed) {
     } else {
       pointed.faces[id - clusterCount] += rays;
     }
-  }
+  });
 }
 
 void FaceProbe::traceRays(const Ports& ports, PointedFace& pointed) {
@@ -136,7 +138,7 @@ void FaceProbe::traceRays(const Ports& ports, PointedFace& pointed) {
     commands.bind(pipeline_,
                   {*ports.buffer("clustered_voxel.voxelize", "grid"), *ports.buffer("clustered_voxel.voxelize", "occupancy"),
                    *ports.buffer("clustered_voxel.index", "rank"), *ports.buffer("clustered_voxel.index", "voxels"),
-                   *ports.buffer("clustered_voxel.index", "distance"), *ports.buffer(kVisibility, "planes"),
+                   *ports.buffer("clustered_voxel.index", "distance"), *ports.grown(kVisibility, "planes").at(0),
                    *ports.buffer("clustered_voxel.faces", "first"), *ports.buffer("clustered_voxel.surface", "faces"),
                    *ports.buffer(kVisibility, "plane_extras"), directions_, *ports.buffer("clustered_voxel.cluster", "labels"), ends_});
     commands.push(push);

@@ -44,7 +44,7 @@ struct Cluster {
   uint firstMember; // into cluster.members
 };
 
-// Visibility row entry: id | (count − 1) << 24. id < C: cluster; C ≤ id < C + F: face id − C (near hit); kMissBase + b: miss in
+// Visibility row entry, once read (visibility_row.h): id | (count − 1) << 24. id < C: cluster; C ≤ id < C + F: face id − C (near hit); kMissBase + b: miss in
 // direction bin b (6 bins: the dominant axis of the direction, as faces are numbered).
 RADIVOX_CONST uint kEntryIdMask = 0x00ffffffu;
 RADIVOX_CONST uint kMissBase = 0x00fffff0u;
@@ -52,8 +52,8 @@ RADIVOX_CONST uint kMissBase = 0x00fffff0u;
 RADIVOX_CONST uint kAbsorbed = kMissBase + 6u;
 RADIVOX_CONST uint kMaxRays = 256u;
 
-// Row of face s: entries [rowStart[s], rowStart[s+1]) of the chunk s / kRowsPerChunk, counted from that chunk's first entry; a
-// chunk's rowStart has kRowsPerChunk + 1 words. Chunk addresses are in a table of uvec2.
+// Row of face s: bits [rowStart[s], rowStart[s+1]) of the chunk s / kRowsPerChunk; a chunk's rowStart has kRowsPerChunk + 1 words. Chunk
+// addresses are in a table of uvec2.
 RADIVOX_CONST uint kRowsPerChunk = 16384u;
 
 RADIVOX_SHARED_END

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <random>
 
+#include "shaders/shared/transfer_entry.h"
 #include "tests/oracles/cluster_oracle.h"
 #include "tests/oracles/gpu_fixture.h"
 #include "tests/oracles/node_harness.h"
@@ -38,6 +38,19 @@ struct Case {
     return out;
   }
 };
+
+/// Form factors as entries of the node's matrix hold them: rounded in running sums.
+void roundToUnits(oracle::SparseMatrix& matrix) {
+  const double units = std::exp2(shared::transferWeightBits(static_cast<uint32_t>(matrix.rows.size())));
+  for (auto& row : matrix.rows) {
+    double sum = 0;
+    for (auto& [j, w] : row) {
+      const double before = std::round(sum * units);
+      sum += w;
+      w = (std::round(sum * units) - before) / units;
+    }
+  }
+}
 
 double uniform(Random& random) { return random() / 4294967296.0; }
 
@@ -82,6 +95,7 @@ Case randomCase(uint32_t clusterCount, uint32_t entryCount, double darkest, doub
     c.clusters.push_back(cluster);
     c.directRadiosity.push_back(direct / cluster.area);
   }
+  roundToUnits(c.matrix);
   return c;
 }
 
@@ -100,6 +114,7 @@ Case uniformBox(uint32_t clusterCount, float albedo) {
     c.faces[s].albedo = shared::encodeAlbedo(glm::vec3(albedo));
     c.faceIrradiance[s] = glm::vec3(1.f);
   }
+  roundToUnits(c.matrix);
   return c;
 }
 
@@ -116,10 +131,11 @@ class BounceTest : public oracles::GpuTest {
     scene::Request request;
     request.bounces = bounces;
     std::vector<uint32_t> rowStart{0};
-    std::vector<glm::uvec2> entries;
+    std::vector<uint32_t> entries;
+    const uint32_t weightBits = shared::transferWeightBits(c.clusterCount());
     std::vector<float> sky;
     for (uint32_t i = 0; i < c.clusterCount(); ++i) {
-      for (const auto& [j, w] : c.matrix.rows[i]) entries.emplace_back(j, std::bit_cast<uint32_t>(static_cast<float>(w)));
+      for (const auto& [j, w] : c.matrix.rows[i]) entries.push_back(shared::packTransferEntry(j, static_cast<uint32_t>(std::ldexp(w, static_cast<int>(weightBits))), weightBits));
       rowStart.push_back(static_cast<uint32_t>(entries.size()));
       sky.push_back(static_cast<float>(c.matrix.sky[i]));
     }

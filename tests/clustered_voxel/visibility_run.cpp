@@ -7,7 +7,7 @@
 #include <random>
 
 #include "modules/clustered_voxel/visibility/visibility.h"
-#include "shaders/shared/voxel.h"
+#include "shaders/shared/visibility_row.h"
 
 namespace radivox::oracle {
 namespace {
@@ -72,23 +72,21 @@ std::vector<Row> VisibilityRun::rows() {
   const auto chunks = harness.downloadGrown<uint32_t>("visibility.entries");
   const auto table = harness.download<uint64_t>("visibility.chunk_table");
   const auto buffers = harness.executor().findGrown("visibility.entries");
-  size_t entries = 0;
   for (size_t chunk = 0; chunk < chunks.size(); ++chunk) {
     EXPECT_EQ(table.at(chunk), buffers[chunk]->address());
-    entries += chunks[chunk].size();
   }
-  if (faceCount_ > 0) {
-    EXPECT_EQ(harness.count("entries"), entries);
-  }
+  size_t entries = 0;
   std::vector<Row> all(faceCount_);
   for (size_t s = 0; s < faceCount_; ++s) {
     const size_t chunk = s / shared::kRowsPerChunk, slot = s + chunk;
-    for (uint32_t e = starts.at(slot); e < starts.at(slot + 1); ++e) {
-      const uint32_t entry = chunks.at(chunk).at(e);
-      const bool fresh = all[s].emplace(entry & shared::kEntryIdMask, (entry >> 24) + 1).second;
-      EXPECT_TRUE(fresh) << "an id twice in row " << s;
-    }
+    EXPECT_LE((starts.at(slot + 1) + 31) / 32 + shared::kRowPadding, chunks.at(chunk).size());
+    const auto idCount = static_cast<uint32_t>(clusterCount + faceCount_);
+    shared::forEachRowEntry(chunks.at(chunk).data(), starts.at(slot), starts.at(slot + 1), idCount, [&](uint32_t id, uint32_t count) {
+      EXPECT_TRUE(all[s].emplace(id, count).second) << "an id twice in row " << s;
+      ++entries;
+    });
   }
+  EXPECT_EQ(harness.count("entries"), entries);
   return all;
 }
 

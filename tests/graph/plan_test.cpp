@@ -346,6 +346,47 @@ TEST(PlanAliasing, SegmentsDoNotShare) {
   EXPECT_NE(plan.resources[plan.findPort("a", "s")->resource].aliasSlot, plan.resources[plan.findPort("b", "s")->resource].aliasSlot);
 }
 
+TEST(PlanAliasing, ScratchLiesInAnOutputThatIsWrittenAfterIt) {
+  Graph g;
+  addFake(g, "source", [](Declaration& d) { d.write("out", words(9), ""); });
+  addFake(g, "a", [](Declaration& d) {
+    d.read("in", "");
+    d.scratch("one", words(1000), "");
+    d.scratch("other", words(1000), "");
+    d.scratch("kept", words(500), "");
+    d.write("out", words(1), "");
+  });
+  addFake(g, "between", [](Declaration& d) {
+    d.read("in", "");
+    d.write("out", words(500), "").persistent = true;
+  });
+  addFake(g, "b", [](Declaration& d) {
+    d.read("in", "");
+    d.write("out", words(1000), "");
+  });
+  // Runs without a: what it wrote may still be read when a runs again.
+  addFake(g, "beside", [](Declaration& d) {
+    d.read("in", "");
+    d.write("out", words(1000), "");
+  });
+  g.connect("source.out", "a.in");
+  g.connect("a.out", "between.in");
+  g.connect("between.out", "b.in");
+  g.connect("source.out", "beside.in");
+  g.output("b.out");
+  g.output("beside.out");
+  const Plan plan = PlanInput().compile(g);
+  const auto resource = [&](const char* node, const char* port) { return plan.resources[plan.findPort(node, port)->resource]; };
+  EXPECT_EQ(resource("a", "one").lender, plan.findPort("b", "out")->resource);
+  EXPECT_EQ(resource("a", "one").aliasSlot, graph::kNoSlot);
+  EXPECT_EQ(resource("a", "other").lender, graph::kNoResource) << "it is lent once";
+  EXPECT_NE(resource("a", "other").aliasSlot, graph::kNoSlot);
+  EXPECT_EQ(resource("a", "kept").lender, graph::kNoResource) << "what is persistent is never lent";
+  const std::string text = plan.printText({});
+  EXPECT_NE(text.find("scratch one: 4 B × 1000 = 4000 B, in b.out"), std::string::npos) << text;
+  EXPECT_NE(text.find("barrier b.out: write"), std::string::npos) << text;
+}
+
 // Barriers ---------------------------------------------------------------------------------------------------------------------------
 
 TEST(PlanBarriers, OncePerUseAfterAWrite) {

@@ -47,9 +47,10 @@ std::vector<uint32_t> listMembers(const std::vector<uint32_t>& labels, uint32_t 
 using VisibilityRows = std::vector<std::vector<std::pair<uint32_t, uint32_t>>>;
 struct PackedRows {
   std::vector<uint32_t> rowStart;             ///< chunks · (kRowsPerChunk + 1)
-  std::vector<std::vector<uint32_t>> chunks;  ///< entries
+  std::vector<std::vector<uint32_t>> chunks;  ///< bits of the entries
 };
-PackedRows packRows(const VisibilityRows& rows);
+/// Rows by ascending id; idCount = C + F.
+PackedRows packRows(const VisibilityRows& rows, uint32_t idCount);
 
 struct SparseMatrix {
   std::vector<std::map<uint32_t, double>> rows;

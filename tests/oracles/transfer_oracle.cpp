@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shaders/shared/visibility_row.h"
 #include "tests/oracles/cluster_oracle.h"
 
 namespace radivox::oracle {
@@ -47,17 +48,25 @@ std::vector<uint32_t> listMembers(const std::vector<uint32_t>& labels, uint32_t 
   return all;
 }
 
-PackedRows packRows(const VisibilityRows& rows) {
+PackedRows packRows(const VisibilityRows& rows, uint32_t idCount) {
   PackedRows packed;
   constexpr size_t kRows = shared::kRowsPerChunk;
   for (size_t begin = 0; begin < rows.size(); begin += kRows) {
-    std::vector<uint32_t> chunk;
+    std::vector<bool> bits;
     for (size_t i = 0; i < kRows; ++i) {
-      packed.rowStart.push_back(static_cast<uint32_t>(chunk.size()));
+      packed.rowStart.push_back(static_cast<uint32_t>(bits.size()));
       if (begin + i >= rows.size()) continue;
-      for (const auto& [id, count] : rows[begin + i]) chunk.push_back(id | (count - 1) << 24);
+      uint32_t next = 0;
+      for (const auto& [id, count] : rows[begin + i]) {
+        const uint32_t code = shared::rowId(id, idCount);
+        const glm::uvec2 entry = shared::encodeRowEntry(code - next, count);
+        for (uint32_t k = 0; k < shared::rowEntryBits(code - next, count); ++k) bits.push_back(((entry[k / 32] >> (k % 32)) & 1) != 0);
+        next = code + 1;
+      }
     }
-    packed.rowStart.push_back(static_cast<uint32_t>(chunk.size()));
+    packed.rowStart.push_back(static_cast<uint32_t>(bits.size()));
+    std::vector<uint32_t> chunk((bits.size() + 31) / 32 + shared::kRowPadding);
+    for (size_t k = 0; k < bits.size(); ++k) chunk[k / 32] |= (bits[k] ? 1u : 0u) << (k % 32);
     packed.chunks.push_back(std::move(chunk));
   }
   return packed;

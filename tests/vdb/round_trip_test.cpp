@@ -9,6 +9,7 @@
 #include <set>
 
 #include "shaders/shared/id_colour.h"
+#include "shaders/shared/visibility_row.h"
 #include "tests/oracles/gpu_fixture.h"
 #include "tests/vdb/vdb_run.h"
 
@@ -48,25 +49,23 @@ struct Truth {
     valid = run.buffer<uint32_t>("gather.valid", (f + 31) / 32);
     const auto chunks = run.executor->findGrown("visibility.entries");
     const auto starts = run.buffer<uint32_t>("visibility.row_start", chunks.size() * (shared::kRowsPerChunk + 1));
-    std::vector<uint32_t> entries;
+    std::vector<uint32_t> words;
     for (uint32_t s = 0; s < f; ++s) {
       const size_t slot = s + s / shared::kRowsPerChunk;
       if (s % shared::kRowsPerChunk == 0) {
         const gpu::Buffer& chunk = *chunks[s / shared::kRowsPerChunk];
-        entries = gpu::downloadAs<uint32_t>(oracles::sharedDevice(), chunk, chunk.bytes() / 4);
+        words = gpu::downloadAs<uint32_t>(oracles::sharedDevice(), chunk, chunk.bytes() / 4);
       }
       std::set<uint32_t> distinct;
       uint32_t rays = 0, missed = 0;
-      for (size_t e = starts[slot]; e < starts[slot + 1]; ++e) {
-        const uint32_t word = entries.at(e);
-        const uint32_t id = word & 0xffffffu, hits = (word >> 24) + 1;
+      shared::forEachRowEntry(words.data(), starts[slot], starts[slot + 1], static_cast<uint32_t>(c + f), [&](uint32_t id, uint32_t hits) {
         rays += hits;
         if (id >= shared::kMissBase) {
           missed += id < shared::kMissBase + 6 ? hits : 0;
         } else {
           distinct.insert(id < c ? id : labels.at(id - c));
         }
-      }
+      });
       seen.push_back(distinct);
       misses.push_back(static_cast<float>(missed) / static_cast<float>(rays));
     }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "shaders/shared/transfer_entry.h"
 #include "shaders/shared/voxel.h"
 
 namespace radivox::clustered_voxel {
@@ -154,6 +155,7 @@ void Bounce::record(graph::RecordContext& context) {
     push.matrix = glm::uvec2(static_cast<uint32_t>(address), static_cast<uint32_t>(address >> 32));
   }
   push.clusterCount = clusterCount;
+  push.weightBits = shared::transferWeightBits(clusterCount);
   push.faceCount = faceCount;
   push.iterationLimit = iterations_;
   push.tolerance = residual_;

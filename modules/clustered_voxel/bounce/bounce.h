@@ -8,7 +8,7 @@
 //         face_radiosity     vec3 × F  likewise: ρ_s (E_dir,s + E_emit + E_ind), direct light at the detail of faces
 //         status             u32 × 4   (read back) iterations; residual as float bits; 1: fell back to plain steps; why it ended
 // runs    when the light, the matrix or the clusters change
-// cost    an iteration is a pass over the matrix (8 B an entry); recorded `iterations` times, those after the end dispatch nothing;
+// cost    an iteration is a pass over the matrix (4 B an entry); recorded `iterations` times, those after the end dispatch nothing;
 //         last=faces: a pass over the rows (4 B an entry), which stay in memory for it
 // source  METHODS section 1, Bounce: B = B⁰ + ρFB per colour channel, B⁰ = Σ a ρ E_dir / Σ a; beyond the paper, which stops at one bounce
 //

@@ -131,6 +131,8 @@ void GatherPixels::record(graph::RecordContext& context) {
          static_cast<uint32_t>(context.count("voxels")),
          near_,
          hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u};
+  // No planes where there are no voxels.
+  const std::vector<const gpu::Buffer*> planes = context.grown("planes");
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
   std::vector<const gpu::Buffer*> grown;
   if (context.has("clearance")) grown = context.grown("clearance");
@@ -147,7 +149,7 @@ void GatherPixels::record(graph::RecordContext& context) {
                  context.buffer("face_radiosity"),
                  directions_,
                  raw,
-                 context.buffer("planes"),
+                 planes.empty() ? distance : *planes.front(),
                  context.buffer("plane_extras"),
                  grown.empty() ? distance : *grown.front(),
                  context.image("triangle"),

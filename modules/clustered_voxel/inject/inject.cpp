@@ -38,7 +38,7 @@ void Inject::declare(graph::Declaration& d) {
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected direct light, W/m²");
   d.readBack("status", Shape::buffer(4, 4), "texels without a face; lit texels, low and high word; 0");
   if (lit_ && method_ == Method::Splat)
-    d.scratch("flux", Shape::buffer(24, Extent::of("faces")), "fixed-point Φ max(0, n·e_f) a face, RGB");
+    d.scratch("flux_high", Shape::buffer(12, Extent::of("faces")), "high words of the fixed-point Φ max(0, n·e_f) a face, RGB");
   if (lit_ && method_ == Method::Splat)
     d.scratch("table", Shape::buffer(4, Extent::of("shadow_views") + 2), "fixed-point exponent, then the first texel of each view");
 }
@@ -54,7 +54,7 @@ void Inject::prepare(graph::PrepareContext& context) {
   if (method_ == Method::Splat) {
     splat_ =
         gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
-                                                       .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                       .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                        .pushConstantBytes = 12,
                                                        .constants = {{0, context.traits().soleLight()}}});
     resolve_ = gpu::Pipeline(
@@ -89,18 +89,19 @@ void Inject::record(graph::RecordContext& context) {
   } push{static_cast<uint32_t>(context.count("shadow_views")), static_cast<uint32_t>(context.count("lights")), faceCount};
 
   if (method_ == Method::Splat) {
-    const gpu::Buffer& flux = context.buffer("flux");
+    const gpu::Buffer& fluxHigh = context.buffer("flux_high");
     const gpu::Buffer& viewTable = context.buffer("table");
     // At most: tiles need not fill their layers; the shader stops at the last view.
     const uint64_t side = context.count("shadow_resolution");
     const uint64_t texels = side * side * context.count("shadow_layers");
-    commands.fill(flux, 0);
+    commands.fill(irradiance, 0);  // the low words, until they are resolved
+    commands.fill(fluxHigh, 0);
     commands.barrier();
     commands.bind(splat_, {context.buffer("scene.info"), context.buffer("scene.lights"), context.buffer("scene.shadow_views"),
                            context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("shadow_triangle"),
                            context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"),
-                           context.buffer("first"), flux, viewTable, status, context.buffer("scene.triangle_materials"),
-                           context.buffer("scene.materials"), context.buffer("faces")});
+                           context.buffer("first"), irradiance, viewTable, status, context.buffer("scene.triangle_materials"),
+                           context.buffer("scene.materials"), fluxHigh, context.buffer("faces")});
     // First one lane: the table. Then every texel.
     push.faceCount = 0;
     commands.push(push);
@@ -110,8 +111,8 @@ void Inject::record(graph::RecordContext& context) {
     commands.push(push);
     commands.dispatchItems(texels, kGroup);
     commands.barrier();
-    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), flux, viewTable, irradiance, context.buffer("scene.lights"),
-                             context.buffer("voxels")});
+    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), irradiance, viewTable, fluxHigh,
+                             context.buffer("scene.lights"), context.buffer("voxels")});
     commands.push(std::array{faceCount, push.lightCount});
     commands.dispatchItems(faceCount, kGroup);
   } else {

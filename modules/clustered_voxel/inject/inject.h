@@ -13,7 +13,8 @@
 // method=splat: the flux of each shadow-map texel falls into the voxel faces of the surface it lands on, so energy is kept exactly
 // whatever the resolution: a texel that carries flux Φ lands on area dA with E dA = Φ, and so brings Φ max(0, n·e_f) to face f's
 // Σ area·max(0, n·e_f)·E, whatever the angle. Sums are 64-bit fixed point scaled to the lights' total flux: no order matters, nothing
-// wraps. method=points: the paper's 18 points 1.5 voxels about the voxel's centre, against the shadow map, with its neighbour test.
+// wraps. Low words lie where the irradiance will be and high words where bounce will write, so sums cost no memory of their own.
+// method=points: the paper's 18 points 1.5 voxels about the voxel's centre, against the shadow map, with its neighbour test.
 #pragma once
 
 #include "engine/graph/node.h"

@@ -41,6 +41,7 @@ RayBench::RayBench(gpu::Device& device, const graph::Executor& executor, const s
   liftedRays_ = gpu::Buffer(device, "bench lifted rays", rayCount_ * sizeof(shared::BenchRay));
   times_ = gpu::Buffer(device, "bench times", rayCount_ * sizeof(float));
   sortRows();
+  measurePieces();
   submit(makePipeline(shared::kBenchRays), surfaceRays_);
   submit(makePipeline(shared::kBenchLifted), liftedRays_);
   for (uint32_t cast = 0; cast < std::size(casts_); ++cast) casts_[cast] = makePipeline(shared::kBenchTraversal + cast);
@@ -81,6 +82,29 @@ void RayBench::sortRows() {
   pool_.reset();
 }
 
+/// Visibility has freed its own.
+void RayBench::measurePieces() {
+  const std::vector<const gpu::Buffer*> ids = executor_.findGrown(node_ + ".triangle_ids");
+  if (ids.empty()) return;
+  const struct {
+    uint32_t voxelCount, entryCount;
+  } push{static_cast<uint32_t>(executor_.counts().at("voxels")), static_cast<uint32_t>(executor_.counts().at("triangle_entries"))};
+  pieces_ = gpu::Buffer(device_, "bench pieces", uint64_t{push.entryCount} * 8);
+  const gpu::Pipeline pipeline(device_,
+                               gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/pieces.comp",
+                                                        .bindings = std::vector<gpu::BindingType>(7, gpu::BindingType::StorageBuffer),
+                                                        .pushConstantBytes = sizeof(push)});
+  const auto buffer = [&](const char* port) -> const gpu::Buffer& { return *executor_.findBuffer(node_ + "." + port); };
+  device_.submitAndWait([&](VkCommandBuffer handle) {
+    gpu::Commands commands(device_, handle, pool_);
+    commands.bind(pipeline, {buffer("grid"), buffer("scene.vertices"), buffer("scene.indices"), buffer("voxels"), buffer("triangle_first"),
+                             *ids.front(), pieces_});
+    commands.push(push);
+    commands.dispatchItems(push.entryCount, 64);
+  });
+  pool_.reset();
+}
+
 void RayBench::record(gpu::Commands& commands, const gpu::Pipeline& pipeline, const gpu::Buffer& rays) const {
   const gpu::Buffer& grid = *executor_.findBuffer(node_ + ".grid");
   const auto buffer = [&](const char* port) -> const gpu::Buffer& {
@@ -101,7 +125,7 @@ void RayBench::record(gpu::Commands& commands, const gpu::Pipeline& pipeline, co
                              buffer("rank"),
                              buffer("voxels"),
                              buffer("distance"),
-                             buffer("planes"),
+                             grown("planes"),
                              buffer("first"),
                              buffer("faces"),
                              grown("clearance"),
@@ -116,7 +140,7 @@ void RayBench::record(gpu::Commands& commands, const gpu::Pipeline& pipeline, co
                              buffer("scene.triangle_materials"),
                              buffer("scene.materials"),
                              buffer("scene.textures"),
-                             grown("pieces"),
+                             pieces_ ? pieces_ : grid,
                              corners != nullptr ? *corners : absent,
                              {times_, chunk.firstRay * sizeof(float), count * sizeof(float)}});
     struct {

@@ -43,6 +43,7 @@ class RayBench {
   void record(gpu::Commands& commands, const gpu::Pipeline& pipeline, const gpu::Buffer& rays) const;
   double submit(const gpu::Pipeline& pipeline, const gpu::Buffer& rays);
   void sortRows();
+  void measurePieces();
 
   gpu::Device& device_;
   const graph::Executor& executor_;
@@ -51,7 +52,7 @@ class RayBench {
   shared::Grid grid_{};
   std::vector<Chunk> chunks_;
   uint64_t rayCount_ = 0;
-  gpu::Buffer directions_, order_, surfaceRays_, liftedRays_, times_;
+  gpu::Buffer directions_, order_, pieces_, surfaceRays_, liftedRays_, times_;
   gpu::Pipeline casts_[3];
   gpu::DescriptorPool pool_;
   gpu::Timestamps timestamps_;

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "shaders/shared/voxel.h"
+#include "shaders/shared/transfer_entry.h"
 
 namespace radivox::clustered_voxel {
 
@@ -15,6 +15,7 @@ struct Push {
   uint32_t clusterCount;
   uint32_t faceCount;
   VkDeviceAddress matrix;
+  uint32_t weightBits;
 };
 
 }  // namespace
@@ -29,7 +30,7 @@ void Transfer::declare(graph::Declaration& d) {
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;
   d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
-  d.write("entries", Shape::buffer(8, Extent::of("transfer_entries")), "column, form factor as float bits; columns ascend").growable = true;
+  d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend").growable = true;
   d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene");
   d.publishCount("transfer_entries", "", 0);
   d.scratch("total", Shape::buffer(4, 2), "number of entries, low and high word");
@@ -55,7 +56,7 @@ void Transfer::record(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const auto clusterCount = static_cast<uint32_t>(context.count("clusters"));
   const gpu::Buffer& rowStart = context.buffer("row_start");
-  Push push{clusterCount, static_cast<uint32_t>(context.count("faces")), 0};
+  Push push{clusterCount, static_cast<uint32_t>(context.count("faces")), 0, shared::transferWeightBits(clusterCount)};
   const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
   if (context.step() == 0) {
     assert(b("scan").bytes() >= gpu::Scan::scratchBytes(clusterCount + 1));
@@ -84,7 +85,7 @@ void Transfer::stepDone(graph::RecordContext& context) {
         ErrorCode::OutOfMemory,
         "clustered_voxel.transfer: the cluster matrix has more than 2^32 entries; raise cluster.spacing or lower voxelize.resolution");
   context.clearGrown("entries");
-  context.grow("entries", static_cast<uint64_t>(total[0]) * 8);
+  context.grow("entries", static_cast<uint64_t>(total[0]) * 4);
   context.setCount("transfer_entries", total[0]);
 }
 

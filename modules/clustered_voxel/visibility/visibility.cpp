@@ -8,6 +8,7 @@
 #include "shaders/clustered_voxel/visibility/visibility.h"
 #include "shaders/shared/clearance.h"
 #include "shaders/shared/triangle_corners.h"
+#include "shaders/shared/visibility_row.h"
 
 namespace radivox::clustered_voxel {
 namespace {
@@ -65,26 +66,27 @@ void Visibility::declare(graph::Declaration& d) {
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster of each face");
-  for (const char* name : {"triangle_first", "triangle_ids", "pieces", "scene.vertices", "scene.indices", "scene.triangle_materials",
-                           "scene.materials", "scene.textures"}) {
-    graph::Port& port = d.read(name, "triangles of each voxel");
+  const auto leaveOut = [this](graph::Port& port) {
     port.optional = true;
     port.unwanted = triangles_ == 0.f;
     port.unwantedReason = "visibility.triangles=0";
-  }
+  };
+  for (const char* name : {"triangle_first", "triangle_ids", "scene.vertices", "scene.indices", "scene.triangle_materials",
+                           "scene.materials", "scene.textures"})
+    leaveOut(d.read(name, "triangles of each voxel"));
+  leaveOut(d.modify("pieces", "where rays start on the triangles of each voxel; freed once all are traced"));
   graph::Port& corners = d.read("corners", "corners of triangles");
   corners.optional = true;
   corners.unwanted = triangles_ == 0.f || d.traits.triangleCount > shared::kMostCornerTriangles;
   corners.unwantedReason = "visibility.triangles=0, or there are too many triangles for an image";
   const Extent faces = Extent::of("faces");
   d.write("row_start", Shape::buffer(4, faces * (kRowsPerChunk + 1) / kRowsPerChunk + (kRowsPerChunk + 1)),
-          "first entry of each row within its chunk");
+          "first bit of each row within its chunk");
   d.write("chunk_table", Shape::buffer(8, faces / kRowsPerChunk + 1), "device address of each chunk of entries");
-  d.write("entries", {}, "id | (count − 1) << 24, a row after the other").growable = true;
+  d.write("entries", {}, "clusters and faces that rays met, and how many did: shared/visibility_row.h").growable = true;
   d.write("clearance", {}, "u8 per voxel and rim: half-size of the empty cube around it").growable = true;
   d.write("clearance_work", {}, "between two passes; freed at once").growable = true;
-  // Planes are as many as faces at most, and a voxel without faces has the place of one.
-  d.write("planes", Shape::buffer(8, faces + 1), "what rays are stopped by: shared/voxel_plane.h");
+  d.write("planes", {}, "what rays are stopped by: shared/voxel_plane.h").growable = true;
   d.write("plane_extras", Shape::buffer(4, Extent::of("voxels")), "where the planes of a voxel after its first are");
   d.write("weights", Shape::buffer(4, faces), "how much of each face others see");
   d.publishCount("entries", "", 0);
@@ -93,8 +95,9 @@ void Visibility::declare(graph::Declaration& d) {
   d.scratch("order", Shape::buffer(4, rows), "rows as lanes take them");
   d.scratch("hits", Shape::buffer(4, rows * rays_), "what each ray of the chunk hit");
   d.scratch("table", Shape::buffer(4, rows << tableBits(rays_)), "hash table a row");
-  d.scratch("offsets", Shape::buffer(4, rows + 1), "distinct ids a row, then their exclusive sums");
-  d.scratch("total", Shape::buffer(4, 2), "entries of the chunk");
+  d.scratch("offsets", Shape::buffer(4, rows + 1), "bits a row, then their exclusive sums");
+  d.scratch("total", Shape::buffer(4, 2), "bits of the chunk; planes beyond the first of their voxels");
+  d.scratch("entry_count", Shape::buffer(4, 1), "entries of all chunks so far");
   // Scan::scratchBytes is a word a block, on every level.
   d.scratch("plane_scan", Shape::buffer(4, Extent::of("voxels") / 512 + 1024), "scan");
   d.scratch("scan", Shape::buffer(1, gpu::Scan::scratchBytes(rows + 1)), "scan");
@@ -118,8 +121,8 @@ void Visibility::prepare(graph::PrepareContext& context) {
   countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
   planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
   sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 3, 8, {{0, context.has("triangle_ids") ? 1u : 0u}});
-  merge_ = make("clustered_voxel/visibility/merge.comp", 6, 20, {{0, weights_ == Weights::Seen ? 1u : 0u}});
-  fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
+  merge_ = make("clustered_voxel/visibility/merge.comp", 7, 24, {{0, weights_ == Weights::Seen ? 1u : 0u}});
+  fill_ = make("clustered_voxel/visibility/fill.comp", 4, 16, {});
   const auto frame = static_cast<uint32_t>(frame_);
   if (traversal_ == Traversal::Bresenham) {
     trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}});
@@ -154,10 +157,10 @@ uint32_t Visibility::rowCount(graph::RecordContext& context, uint32_t chunk) con
   return static_cast<uint32_t>(std::min<uint64_t>(kRowsPerChunk, context.count("faces") - uint64_t{chunk} * kRowsPerChunk));
 }
 
-// Step 0 learns the grid; step 1 + k fills chunk k − 1 and traces chunk k.
+// Step 0 learns the grid and counts planes; step 1 makes them; step 1 + k fills chunk k − 1 and traces chunk k.
 uint32_t Visibility::stepCount(graph::RecordContext& context) {
   const uint32_t chunks = chunkCount(context);
-  return chunks == 0 ? 1 : chunks + 2;
+  return chunks == 0 ? 2 : chunks + 2;
 }
 
 void Visibility::record(graph::RecordContext& context) {
@@ -166,12 +169,14 @@ void Visibility::record(graph::RecordContext& context) {
     context.commands().fill(context.buffer("row_start"), 0);
     context.commands().fill(context.buffer("chunk_table"), 0);
     context.commands().fill(context.buffer("weights"), 0);
+    context.commands().fill(context.buffer("entry_count"), 0);
+    countPlanes(context);
     return;
   }
   context.commands().barrier();
   if (step == 1) {
-    recordPlanes(context);
-    if (usesClearance()) recordClearance(context);
+    if (!context.grown("planes").empty()) recordPlanes(context);
+    if (!context.grown("clearance").empty()) recordClearance(context);
   }
   if (step > 1) recordFill(context, step - 2);
   if (step <= chunkCount(context)) recordTrace(context, step - 1);
@@ -186,18 +191,21 @@ void Visibility::stepDone(graph::RecordContext& context) {
     uint32_t total[2];
     const std::vector<std::byte> raw = context.readBuffer("total", 0, sizeof(total));
     std::memcpy(total, raw.data(), sizeof(total));
-    context.grow("entries", uint64_t{total[0]} * 4);
-    entryCount_ += total[0];
+    context.grow("entries", (uint64_t{total[0]} + 31) / 32 * 4 + uint64_t{shared::kRowPadding} * 4);
     context.reportProgress(static_cast<double>(step) / chunks);
   }
   if (step < chunks || (chunks > 0 && step == chunks)) return;
+  if (context.has("pieces")) context.clearGrown("pieces");
+  uint32_t entryCount = 0;
+  const std::vector<std::byte> raw = context.readBuffer("entry_count", 0, sizeof(entryCount));
+  std::memcpy(&entryCount, raw.data(), sizeof(entryCount));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double faces = static_cast<double>(context.count("faces"));
-  context.setCount("entries", entryCount_);
+  context.setCount("entries", entryCount);
   context.reportStat("rays", faces * rays_);
   context.reportStat("mrays_per_second", seconds > 0 ? faces * rays_ / seconds * 1e-6 : 0);
-  context.reportStat("entries", static_cast<double>(entryCount_));
-  context.reportStat("mean_row", faces > 0 ? static_cast<double>(entryCount_) / faces : 0);
+  context.reportStat("entries", static_cast<double>(entryCount));
+  context.reportStat("mean_row", faces > 0 ? static_cast<double>(entryCount) / faces : 0);
   context.reportStat("clearance_bytes", usesClearance() && faces > 0 ? static_cast<double>(clearanceBytes(grid_)) : 0);
 }
 
@@ -215,25 +223,41 @@ void Visibility::begin(graph::RecordContext& context) {
   }
   context.clearGrown("entries");
   context.clearGrown("clearance");
-  entryCount_ = 0;
+  context.clearGrown("planes");
   start_ = std::chrono::steady_clock::now();
   clearanceTooLarge_ = maxRange_ != 0 && clearanceBytes(grid_) > maxRange_;
+  const uint64_t voxels = context.count("voxels");
+  if (voxels == 0) return;
+  uint32_t extras[2];
+  const std::vector<std::byte> total = context.readBuffer("total", 0, sizeof(extras));
+  std::memcpy(extras, total.data(), sizeof(extras));
+  context.grow("planes", 8 * (voxels + extras[0]));
   if (!usesClearance() || chunkCount(context) == 0) return;
   context.grow("clearance", clearanceBytes(grid_));
   context.grow("clearance_work", clearanceBytes(grid_));
 }
 
+void Visibility::countPlanes(graph::RecordContext& context) {
+  gpu::Commands& commands = context.commands();
+  const auto voxels = static_cast<uint32_t>(context.count("voxels"));
+  if (voxels == 0) return;
+  const gpu::Buffer& extras = context.buffer("plane_extras");
+  const gpu::Buffer& none = context.buffer("grid");
+  commands.bind(countPlanes_, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), none, extras});
+  commands.push(voxels);
+  commands.dispatchItems(voxels, 64);
+  commands.barrier();
+  scan_->scan(commands, extras, extras, voxels, context.buffer("plane_scan"), &context.buffer("total"));
+}
+
 void Visibility::recordPlanes(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const auto voxels = static_cast<uint32_t>(context.count("voxels"));
-  const gpu::Buffer& extras = context.buffer("plane_extras");
-  for (const gpu::Pipeline* pipeline : {&countPlanes_, &planes_}) {
-    commands.bind(*pipeline, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), context.buffer("planes"), extras});
-    commands.push(voxels);
-    commands.dispatchItems(voxels, 64);
-    commands.barrier();
-    if (pipeline == &countPlanes_) scan_->scan(commands, extras, extras, voxels, context.buffer("plane_scan"));
-  }
+  commands.bind(planes_, {context.buffer("mask"), context.buffer("first"), context.buffer("faces"), *context.grown("planes").at(0),
+                          context.buffer("plane_extras")});
+  commands.push(voxels);
+  commands.dispatchItems(voxels, 64);
+  commands.barrier();
 }
 
 void Visibility::recordClearance(graph::RecordContext& context) {
@@ -290,7 +314,7 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
                                                  context.buffer("rank"),
                                                  context.buffer("voxels"),
                                                  context.buffer("distance"),
-                                                 context.buffer("planes"),
+                                                 *context.grown("planes").at(0),
                                                  context.buffer("first"),
                                                  context.buffer("faces"),
                                                  clearance,
@@ -312,9 +336,12 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);
   commands.barrier();
   struct {
-    uint32_t rowCount, rayCount, tableBits, clusterCount, firstFace;
-  } mergePush{rows, rays_, tableBits(rays_), static_cast<uint32_t>(context.count("clusters")), firstFace};
-  commands.bind(merge_, {hits, context.buffer("labels"), table, offsets, context.buffer("faces"), context.buffer("weights")});
+    uint32_t rowCount, rayCount, tableBits, clusterCount, firstFace, faceCount;
+  } mergePush{rows,      rays_,
+              tableBits(rays_), static_cast<uint32_t>(context.count("clusters")),
+              firstFace, static_cast<uint32_t>(context.count("faces"))};
+  commands.bind(merge_, {hits, context.buffer("labels"), table, offsets, context.buffer("faces"), context.buffer("weights"),
+                         context.buffer("entry_count")});
   commands.push(mergePush);
   commands.dispatchItems(kRowsPerChunk + 1, 64);
   commands.barrier();
@@ -326,9 +353,12 @@ void Visibility::recordFill(graph::RecordContext& context, uint32_t chunk) {
   const gpu::Buffer& entries = *context.grown("entries").at(chunk);
   const VkDeviceAddress address = entries.address();
   commands.update(context.buffer("chunk_table"), &address, sizeof(address), uint64_t{chunk} * sizeof(address));
+  commands.fill(entries, 0);
+  commands.barrier();
   struct {
-    uint32_t rowCount, tableBits, firstRowStart;
-  } push{rowCount(context, chunk), tableBits(rays_), chunk * (kRowsPerChunk + 1)};
+    uint32_t rowCount, tableBits, firstRowStart, idCount;
+  } push{rowCount(context, chunk), tableBits(rays_), chunk * (kRowsPerChunk + 1),
+         static_cast<uint32_t>(context.count("clusters") + context.count("faces"))};
   commands.bind(fill_, {context.buffer("table"), context.buffer("offsets"), entries, context.buffer("row_start")});
   commands.push(push);
   commands.dispatchItems(kRowsPerChunk + 1, 64);

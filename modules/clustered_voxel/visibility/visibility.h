@@ -1,17 +1,18 @@
 // clustered_voxel.visibility — what each voxel face sees: form factors by counting rays.
 //
 // reads   grid; occupancy, distance (per brick); rank; voxels, mask, first (per voxel); faces; labels (cluster of each face)
-//         triangle_first, triangle_ids, pieces?, corners? of triangles and scene geometry (triangles > 0)
-// writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first entry of each row within its chunk
-//         entries+ u32                                rows, a buffer a chunk: shared/voxel.h; the counts of a row sum to M
+//         triangle_first, triangle_ids, corners? of triangles and scene geometry (triangles > 0)
+// takes   pieces?+ of triangles, which nobody else needs: freed at the end, and made again where this runs again
+// writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first bit of each row within its chunk
+//         entries+ bits                               rows, a buffer a chunk: shared/visibility_row.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
 //         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
-//         planes uvec2 × F, plane_extras u32 × V      what rays are stopped by (shared/voxel_plane.h)
+//         planes+ uvec2, plane_extras u32 × V         what rays are stopped by (shared/voxel_plane.h)
 //         weights u32 × F                             Σ a over the rays that hit the face from beyond 2 h, in 1/64 h²; 0: nobody sees it
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
 // cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
-//         of scratch; 4 bytes an entry; one byte a voxel of the grid (twice while it is made)
+//         of scratch; about 14 bits an entry; one byte a voxel of the grid (twice while it is made)
 // source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
 //
 // Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. With triangles, rays start on pieces of the
@@ -58,6 +59,7 @@ class Visibility : public graph::Node {
   uint32_t rowCount(graph::RecordContext& context, uint32_t chunk) const;
   bool usesClearance() const { return traversal_ == Traversal::Dda && skip_ == Skip::Clearance && !clearanceTooLarge_; }
   void begin(graph::RecordContext& context);
+  void countPlanes(graph::RecordContext& context);
   void recordPlanes(graph::RecordContext& context);
   void recordClearance(graph::RecordContext& context);
   void recordTrace(graph::RecordContext& context, uint32_t chunk);
@@ -80,7 +82,6 @@ class Visibility : public graph::Node {
   shared::Grid grid_{};
   VkDeviceSize maxRange_ = 0;
   bool clearanceTooLarge_ = false;
-  uint64_t entryCount_ = 0;
   std::chrono::steady_clock::time_point start_;
 };
 

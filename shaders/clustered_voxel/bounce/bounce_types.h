@@ -5,13 +5,14 @@
 RADIVOX_SHARED_BEGIN
 
 struct BouncePush {
-  uvec2 matrix;         // device address of the entries of F: column, weight
+  uvec2 matrix;         // device address of the entries of F (shared/transfer_entry.h)
   uint clusterCount;
   uint faceCount;
   uint iterationLimit;
   float tolerance;      // of the residual, relative to the greatest source
   uint startBelow;      // 1: x₀ = −max b (see bounce.h), 0: x₀ = b
   uint hasEmission;
+  uint weightBits;      // of an entry of F
   uint senders;         // where in its buffer the vector starts that the last bounce at faces starts from
 };
 

@@ -40,12 +40,11 @@ vec3 radiosityOf(uint id) {
 
 vec3 rowIrradiance(uint s) {
   uint slot = rowSlot(s);
-  Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
-  uint end = visibilityRowStart[slot + 1u];
+  VisibilityRow row = openRow(chunkTable[s / kRowsPerChunk], visibilityRowStart[slot], visibilityRowStart[slot + 1u]);
   vec3 sum = vec3(0.0);
   float rays = 0.0;
-  for (uint e = visibilityRowStart[slot]; e < end; ++e) {
-    uint entry = entries.words[e];
+  while (hasEntry(row)) {
+    uint entry = nextEntry(row, push.clusterCount + push.faceCount);
     float count = float((entry >> 24) + 1u);
     sum += count * radiosityOf(entry & kEntryIdMask);
     rays += count;

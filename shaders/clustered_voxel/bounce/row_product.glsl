@@ -7,17 +7,18 @@
 #include "clustered_voxel/bounce/bounce_types.h"
 #include "clustered_voxel/compensated.glsl"
 #include "shared/dispatch.glsl"
+#include "shared/transfer_entry.h"
 #include "shared/voxel.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { BouncePush push; };
 layout(set = 0, binding = 0, scalar) readonly buffer RowStart { uint rowStart[]; };
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MatrixEntry { uvec2 value; };
-// The number of an entry times eight does not fit 32 bits in large scenes.
-uvec2 entryAt(uint index) {
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MatrixEntry { uint value; };
+// The number of an entry times four does not fit 32 bits in large scenes.
+uint entryAt(uint index) {
   uint high, low;
-  umulExtended(index, 8u, high, low);
+  umulExtended(index, 4u, high, low);
   uint carry;
   uint addressLow = uaddCarry(push.matrix.x, low, carry);
   return MatrixEntry(uvec2(addressLow, push.matrix.y + high + carry)).value;
@@ -37,8 +38,9 @@ bool isFirstOfRow() { return gl_LocalInvocationID.x % kRowLanes == 0u; }
     if (row < push.clusterCount) {                                                                 \
       uint end_ = rowStart[row + 1u];                                                              \
       for (uint e_ = rowStart[row] + gl_LocalInvocationID.x % kRowLanes; e_ < end_; e_ += kRowLanes) { \
-        uvec2 entry_ = entryAt(e_);                                                                \
-        addTo(sum_, uintBitsToFloat(entry_.y) * RADIVOX_VECTOR(entry_.x));                         \
+        uint entry_ = entryAt(e_);                                                                 \
+        float weight_ = float(transferUnits(entry_, push.weightBits)) * transferUnit(push.weightBits); \
+        addTo(sum_, weight_ * RADIVOX_VECTOR(transferColumn(entry_, push.weightBits)));            \
       }                                                                                            \
     }                                                                                              \
     laneHigh[gl_LocalInvocationID.x] = sum_.high;                                                  \

@@ -38,9 +38,7 @@ void main() {
   uint i = radivoxItemIndex();
   if (i >= status[0]) return;
   uint s = list[i];
-  uint first = rowStart[rowSlot(s)];
-  uint end = rowStart[rowSlot(s) + 1];
-  Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
+  VisibilityRow row = openRow(chunkTable[s / kRowsPerChunk], rowStart[rowSlot(s)], rowStart[rowSlot(s) + 1]);
   vec3 sum = vec3(0.0);
   vec3 squares = vec3(0.0);
   uint rays = 0, misses = 0;
@@ -49,8 +47,8 @@ void main() {
   vec3 axis = vec3(0.0);
   axis[f >> 1] = (f & 1u) != 0u ? -1.0 : 1.0;
   vec3 x = vec3(ivec3(unpackVoxel(voxels[faces[s].key >> 3]))) + 0.5 + 0.5 * axis;
-  for (uint e = first; e < end; ++e) {
-    uint word = entries.words[e];
+  while (hasEntry(row)) {
+    uint word = nextEntry(row, clusterCount + faceCount);
     uint id = word & kEntryIdMask;
     uint count = (word >> 24) + 1;
     rays += count;

@@ -13,9 +13,9 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, scalar) readonly buffer FacesBuffer { Face faces[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer GridBuffer { Grid grid; };
-layout(set = 0, binding = 2, scalar) readonly buffer FluxBuffer { uint flux[]; };
+layout(set = 0, binding = 2, scalar) buffer IrradianceBuffer { uint irradiance[]; };  // RGB a face; low words of the flux, then bits of floats
 layout(set = 0, binding = 3, scalar) readonly buffer TableBuffer { uint viewTable[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer IrradianceBuffer { vec3 irradiance[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer FluxHighBuffer { uint fluxHigh[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer LightBuffer { Light lights[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer VoxelBuffer { uint voxels[]; };
 layout(push_constant, scalar) uniform Push {
@@ -44,8 +44,8 @@ void main() {
   float area = min(faces[s].area, 1.0) * grid.h * grid.h;
   vec3 sum;
   for (uint c = 0; c < 3; ++c)
-    sum[c] = ldexp(float(flux[6 * s + 2 * c + 1]), 32 - exponent) + ldexp(float(flux[6 * s + 2 * c]), -exponent);
+    sum[c] = ldexp(float(fluxHigh[3 * s + c]), 32 - exponent) + ldexp(float(irradiance[3 * s + c]), -exponent);
   sum /= area;
   if (faces[s].area < kScrap) sum = min(sum, mostIrradiance(faces[s]));
-  irradiance[s] = sum;
+  for (uint c = 0; c < 3; ++c) irradiance[3 * s + c] = floatBitsToUint(sum[c]);
 }

@@ -21,12 +21,13 @@ layout(set = 0, binding = 2, scalar) readonly buffer ViewBuffer { ShadowView vie
 layout(set = 0, binding = 3, scalar) readonly buffer VertexBuffer { Vertex vertices[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer IndexBuffer { uint indices[]; };
 layout(set = 0, binding = 5) uniform usampler2DArray shadowTriangle;
-layout(set = 0, binding = 11, scalar) buffer FluxBuffer { uint flux[]; };        // 6 words a face: RGB × (low, high)
+layout(set = 0, binding = 11, scalar) buffer FluxLowBuffer { uint fluxLow[]; };  // RGB a face
 layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; };  // [0] exponent as int; [1 + v] first texel of view v
 layout(set = 0, binding = 13, scalar) buffer StatusBuffer { uint status[]; };
 layout(set = 0, binding = 14, scalar) readonly buffer TriangleMaterialBuffer { uint triangleMaterials[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer MaterialBuffer { Material materials[]; };
-layout(set = 0, binding = 16, scalar) readonly buffer FacesBuffer { Face faces[]; };
+layout(set = 0, binding = 16, scalar) buffer FluxHighBuffer { uint fluxHigh[]; };
+layout(set = 0, binding = 17, scalar) readonly buffer FacesBuffer { Face faces[]; };
 layout(constant_id = 0) const uint kSoleLight = 0xffffffffu;  // the kind of the one light; all ones: there may be more
 layout(push_constant, scalar) uniform Push {
   uint viewCount;
@@ -67,10 +68,10 @@ uvec2 toUnits(float value, int exponent) {
 
 void addFlux(uint word, uvec2 value) {
   if (value.x == 0u && value.y == 0u) return;
-  uint old = atomicAdd(flux[word], value.x);
+  uint old = atomicAdd(fluxLow[word], value.x);
   uint carry = old + value.x < old ? 1u : 0u;
   uint high = value.y + carry;
-  if (high != 0u) atomicAdd(flux[word + 1], high);
+  if (high != 0u) atomicAdd(fluxHigh[word], high);
 }
 
 // Adds `power`·max(0, n·e_f) to the faces of the voxel at `coord`; the weight that found a face. Light on a back goes where the face is made of backs:
@@ -85,7 +86,7 @@ float deposit(ivec3 coord, vec3 n, vec3 power, int exponent, bool isBack) {
     if (face == kNone || w == 0.0) continue;
     found += w * w;
     if (isBack && (faces[face].position & kMadeOfBacks) == 0u) continue;
-    for (uint c = 0; c < 3; ++c) addFlux(face * 6 + 2 * c, toUnits(power[c] * w, exponent));
+    for (uint c = 0; c < 3; ++c) addFlux(face * 3 + c, toUnits(power[c] * w, exponent));
   }
   return found;
 }

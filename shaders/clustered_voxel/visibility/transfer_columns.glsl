@@ -10,6 +10,7 @@ layout(push_constant, scalar) uniform Push {
   uint clusterCount;
   uint faceCount;
   uvec2 matrix;  // device address of the entries (fill only)
+  uint weightBits;
 } push;
 layout(set = 0, binding = 0, scalar) readonly buffer RowStart { uint rowStart[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer ChunkTable { uvec2 chunkTable[]; };
@@ -31,6 +32,11 @@ uint columnOf(uint entry) {
 }
 uint countOf(uint entry) { return (entry >> 24) + 1u; }
 
+VisibilityRow rowOf(uint s) {
+  uint slot = rowSlot(s);
+  return openRow(chunkTable[s / kRowsPerChunk], rowStart[slot], rowStart[slot + 1u]);
+}
+
 uint windowWords(uint window) { return min(kWords, (push.clusterCount - window + 31u) / 32u); }
 
 // All lanes; ends with a barrier.
@@ -41,11 +47,9 @@ void findColumns(Cluster cluster, uint window) {
   barrier();
   for (uint i = lane; i < cluster.faceCount; i += kLanes) {
     uint s = members[cluster.firstMember + i];
-    uint slot = rowSlot(s);
-    uint end = rowStart[slot + 1u];
-    Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
-    for (uint e = rowStart[slot]; e < end; ++e) {
-      uint column = columnOf(entries.words[e]) - window;  // wraps for columns before the window
+    VisibilityRow row = rowOf(s);
+    while (hasEntry(row)) {
+      uint column = columnOf(nextEntry(row, push.clusterCount + push.faceCount)) - window;  // wraps for columns before the window
       if (column < kWindow && column + window < push.clusterCount) atomicOr(columnBits[column >> 5], 1u << (column & 31u));
     }
   }

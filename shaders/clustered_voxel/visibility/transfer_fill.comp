@@ -2,10 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 // Rows of the cluster matrix: F_cc' = Σ_s w_s m_sc' / Σ_s w_s M_s, and the misses. Weights become integers relative to the cluster's
-// largest (31 bits), so the sums are exact and the same for any order, and every row with its misses sums to one but for the last
-// rounding of each entry. Until a row is done its entries hold the two words of their sums.
+// largest (31 bits), so the sums are exact and the same for any order. Form factors are rounded to their units (shared/transfer_entry.h) in
+// running sums over the columns: no entry is off by a unit, and every row with its misses sums to one exactly.
 #include "clustered_voxel/visibility/transfer_columns.glsl"
 #include "shared/fixed_point.glsl"
+#include "shared/transfer_entry.h"
 layout(set = 0, binding = 5, scalar) readonly buffer Starts { uint starts[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer FaceAreas { Face faces[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer Sky { float sky[]; };
@@ -13,18 +14,22 @@ layout(constant_id = 0) const bool kWeighted = false;
 #define RADIVOX_BIND_WEIGHTS 8
 #include "clustered_voxel/weights.glsl"
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer MatrixEntry { uvec2 value; };
-// Entries are found from the row's address: their number times eight does not fit 32 bits in large scenes.
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer MatrixEntry { uint value; };
+// Entries are found from the row's address: their number times four does not fit 32 bits in large scenes.
 MatrixEntry entryAt(uint index) {
   uint high, low;
-  umulExtended(index, 8u, high, low);
+  umulExtended(index, 4u, high, low);
   uint carry;
   uint addressLow = uaddCarry(push.matrix.x, low, carry);
   return MatrixEntry(uvec2(addressLow, push.matrix.y + high + carry));
 }
 
+// Columns whose sums are in shared memory at a time: nearly always the whole row.
+const uint kBatch = 1024u;
+shared uint sumLow[kBatch], sumHigh[kBatch];
 shared uint columnsBefore[kWords];
 shared uint laneSums[kLanes];
+shared uint laneLow[kLanes], laneHigh[kLanes];
 shared uint greatestWeight;
 shared uint totalLow, totalHigh, skyLow, skyHigh;
 
@@ -35,6 +40,27 @@ uvec2 timesCount(uint unit, uint count) {
 }
 
 uint weightUnits(float weight, float greatest) { return uint(weight / greatest * 2147483648.0); }
+
+// part · 2^weightBits / whole to the nearest integer; part ≤ whole. Only 31 bits of both count: what is left of the rounding is the same for
+// every call with this whole, so the result never falls as part grows.
+uint unitsOf(uvec2 part, uvec2 whole) {
+  if (whole == uvec2(0u)) return 0u;
+  int top = whole.y != 0u ? 32 + findMSB(whole.y) : findMSB(whole.x);
+  int drop = max(top - 30, 0);
+  uint divisor = drop >= 32 ? whole.y >> (drop - 32) : drop == 0 ? whole.x : (whole.y << (32 - drop)) | (whole.x >> drop);
+  uint rest = drop >= 32 ? part.y >> (drop - 32) : drop == 0 ? part.x : (part.y << (32 - drop)) | (part.x >> drop);
+  uint units = rest / divisor;
+  rest -= units * divisor;
+  for (uint i = 0u; i < push.weightBits; ++i) {
+    rest <<= 1;
+    units <<= 1;
+    if (rest >= divisor) {
+      rest -= divisor;
+      units |= 1u;
+    }
+  }
+  return units + (2u * rest >= divisor ? 1u : 0u);
+}
 
 // The cluster's largest weight; all lanes.
 float greatestOf(Cluster cluster, bool byArea) {
@@ -68,6 +94,7 @@ void main() {
 
   uvec2 total = uvec2(0u);
   uvec2 missed = uvec2(0u);
+  uvec2 passed = uvec2(0u);  // of the row's sum, by columns that are done
   uint row = starts[c];
   for (uint window = 0u; window < push.clusterCount; window += kWindow) {
     findColumns(cluster, window);
@@ -90,55 +117,81 @@ void main() {
       windowColumns += laneSums[i];
     }
     for (uint i = begin; i < end; ++i) columnsBefore[i] += before;
-    for (uint i = lane; i < windowColumns; i += kLanes) entryAt(row + i).value = uvec2(0u);
-    memoryBarrierBuffer();
-    barrier();
 
-    for (uint i = lane; i < cluster.faceCount; i += kLanes) {
-      uint s = members[cluster.firstMember + i];
-      uint unit = weightUnits(weightOf(s, byArea), greatest);
-      uint slot = rowSlot(s);
-      uint rowEnd = rowStart[slot + 1u];
-      Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
-      for (uint e = rowStart[slot]; e < rowEnd; ++e) {
-        uint entry = entries.words[e];
-        uvec2 share = timesCount(unit, countOf(entry));
-        uint column = columnOf(entry);
-        if (window == 0u) {
-          total = fixedAdd(total, share);
-          if (column == kMissBase) missed = fixedAdd(missed, share);
-        }
-        column -= window;
-        if (column < kWindow && column + window < push.clusterCount) {
-          uint word = column >> 5;
-          uint rank = columnsBefore[word] + uint(bitCount(columnBits[word] & ((1u << (column & 31u)) - 1u)));
-          MatrixEntry target = entryAt(row + rank);
-          radivoxFixedAtomicAdd(target.value.x, target.value.y, share);
+    // The first batch of all adds up the whole, columns or none.
+    for (uint firstRank = 0u; firstRank < windowColumns || (window == 0u && firstRank == 0u); firstRank += kBatch) {
+      bool addsUp = window == 0u && firstRank == 0u;
+      for (uint i = lane; i < kBatch; i += kLanes) sumLow[i] = sumHigh[i] = 0u;
+      barrier();
+      for (uint i = lane; i < cluster.faceCount; i += kLanes) {
+        uint s = members[cluster.firstMember + i];
+        uint unit = weightUnits(weightOf(s, byArea), greatest);
+        VisibilityRow seen = rowOf(s);
+        while (hasEntry(seen)) {
+          uint entry = nextEntry(seen, push.clusterCount + push.faceCount);
+          uvec2 share = timesCount(unit, countOf(entry));
+          uint column = columnOf(entry);
+          if (addsUp) {
+            total = fixedAdd(total, share);
+            if (column == kMissBase) missed = fixedAdd(missed, share);
+          }
+          column -= window;
+          if (column < kWindow && column + window < push.clusterCount) {
+            uint word = column >> 5;
+            uint rank = columnsBefore[word] + uint(bitCount(columnBits[word] & ((1u << (column & 31u)) - 1u))) - firstRank;
+            if (rank < kBatch) radivoxFixedAtomicAdd(sumLow[rank], sumHigh[rank], share);
+          }
         }
       }
-    }
-    if (window == 0u) {
-      radivoxFixedAtomicAdd(totalLow, totalHigh, total);
-      radivoxFixedAtomicAdd(skyLow, skyHigh, missed);
-    }
-    memoryBarrierBuffer();
-    barrier();
-
-    float scale = fixedToFloatBits(uvec2(totalLow, totalHigh), 0);
-    if (window == 0u && lane == 0u) sky[c] = scale > 0.0 ? fixedToFloatBits(uvec2(skyLow, skyHigh), 0) / scale : 1.0;
-    for (uint i = lane; i < words; i += kLanes) {
-      uint bits = columnBits[i];
-      uint rank = columnsBefore[i];
-      while (bits != 0u) {
-        uint bit = uint(findLSB(bits));
-        bits &= bits - 1u;
-        MatrixEntry target = entryAt(row + rank);
-        float weight = fixedToFloatBits(target.value, 0) / scale;
-        target.value = uvec2(window + i * 32u + bit, floatBitsToUint(weight));
-        rank += 1u;
+      if (addsUp) {
+        radivoxFixedAtomicAdd(totalLow, totalHigh, total);
+        radivoxFixedAtomicAdd(skyLow, skyHigh, missed);
       }
+      barrier();
+
+      // Lanes take runs of columns once more: what was passed before each, in units, is what it begins with.
+      uvec2 whole = uvec2(totalLow, totalHigh);
+      uint count = min(kBatch, windowColumns - firstRank);
+      uint columnRun = (count + kLanes - 1u) / kLanes;
+      uint firstColumn = min(lane * columnRun, count);
+      uint endColumn = min(firstColumn + columnRun, count);
+      uvec2 runSum = uvec2(0u);
+      for (uint i = firstColumn; i < endColumn; ++i) runSum = fixedAdd(runSum, uvec2(sumLow[i], sumHigh[i]));
+      laneLow[lane] = runSum.x;
+      laneHigh[lane] = runSum.y;
+      barrier();
+      uvec2 upTo = passed;
+      for (uint i = 0u; i < kLanes; ++i) {
+        if (i < lane) upTo = fixedAdd(upTo, uvec2(laneLow[i], laneHigh[i]));
+        passed = fixedAdd(passed, uvec2(laneLow[i], laneHigh[i]));
+      }
+      uint unitsBefore = unitsOf(upTo, whole);
+      for (uint i = firstColumn; i < endColumn; ++i) {
+        upTo = fixedAdd(upTo, uvec2(sumLow[i], sumHigh[i]));
+        uint units = unitsOf(upTo, whole);
+        sumLow[i] = units - unitsBefore;
+        unitsBefore = units;
+      }
+      barrier();
+      for (uint i = lane; i < words; i += kLanes) {
+        uint bits = columnBits[i];
+        uint rank = columnsBefore[i] - firstRank;
+        while (bits != 0u) {
+          uint bit = uint(findLSB(bits));
+          bits &= bits - 1u;
+          if (rank < count) entryAt(row + firstRank + rank).value = packTransferEntry(window + i * 32u + bit, sumLow[rank], push.weightBits);
+          rank += 1u;
+        }
+      }
+      barrier();
     }
     row += windowColumns;
     barrier();
+  }
+  // What is lost on backs lies between the columns and the misses.
+  if (lane == 0u) {
+    uvec2 whole = uvec2(totalLow, totalHigh);
+    uint kept = unitsOf(fixedAdd(whole, fixedNegate(uvec2(skyLow, skyHigh))), whole);
+    sky[c] = 1.0 - float(kept) * transferUnit(push.weightBits);
   }
 }
