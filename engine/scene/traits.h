@@ -25,6 +25,7 @@ enum class Feature : uint32_t {
   Readers,      ///< nodes and pictures that nobody asked for
   OtherLights,  ///< more lights than one, and of other kinds
   DarkViews,    ///< shadow maps where no face is, and lights that end before the nearest
+  Sky,
   Count
 };
 constexpr uint32_t kKeepAll = ~0u;
@@ -71,6 +72,7 @@ struct Traits {
     return directionalLightCount > 0 ? shared::kLightDirectional : pointLightCount > 0 ? shared::kLightPoint : shared::kLightSpot;
   }
   bool hasPunctualLights() const { return punctualLightCount() > 0 || keeps(Feature::PunctualLights); }
+  bool hasSky() const { return sky || keeps(Feature::Sky); }
   bool hasEmitters() const { return emissiveTriangleCount > 0 || keeps(Feature::Emitters); }
   /// Emission reaches clusters by rays; where nothing emits but is kept, so does nothing.
   bool hasEmissionByRays() const { return emittersByRays || (emissiveTriangleCount == 0 && keeps(Feature::Emitters)); }

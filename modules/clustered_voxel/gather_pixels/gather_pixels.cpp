@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "modules/clustered_voxel/sky/sky.h"
 #include "modules/clustered_voxel/structure.h"
 #include "shaders/shared/triangle_corners.h"
 
@@ -81,6 +82,10 @@ void GatherPixels::declare(graph::Declaration& d) {
   readNear("scene.triangle_materials", "one a triangle", masked || shadow, "no near triangle has an alpha mask");
   readNear("scene.materials", "Material", masked || shadow, "no near triangle has an alpha mask");
   readNear("scene.textures", "Texture", masked, "no near triangle has an alpha mask");
+  if (graph::Port& sky = readSky(d); !shadow) {
+    sky.unwanted = true;
+    sky.unwantedReason = kNoShadow;
+  }
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   d.scratch("raw", image, "E_indirect from each pixel's own rays");
   if (smooth_ > 0) d.scratch("between", image, "E_indirect between filter passes");
@@ -96,7 +101,7 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   hasTriangles_ = context.has("triangle_ids");
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
   hasShadow_ = context.has("shadow_depth");
-  std::vector<BindingType> bindings(29, kB);
+  std::vector<BindingType> bindings(30, kB);
   for (const size_t map : {25, 26, 28}) bindings[map] = BindingType::SampledImage;
   for (const size_t image : {6, 7, 11, 15}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
@@ -107,7 +112,8 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
                                                                         {1, hasTriangles_ ? 1u : 0u},
                                                                         {2, isMasked_ ? 1u : 0u},
                                                                         {3, hasShadow_ ? 1u : 0u},
-                                                                        {4, context.has("corners") ? 1u : 0u}}});
+                                                                        {4, context.has("corners") ? 1u : 0u},
+                                                                        {5, context.has("sky_irradiance") ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -163,7 +169,8 @@ void GatherPixels::record(graph::RecordContext& context) {
                  map("shadow_depth"),
                  map("shadow_triangle"),
                  optional("face_irradiance", hasShadow_),
-                 context.has("corners") ? context.image("corners") : absent_});
+                 context.has("corners") ? context.image("corners") : absent_,
+                 optional("sky_irradiance", context.has("sky_irradiance"))});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);

@@ -2,7 +2,7 @@
 //
 // reads   gbuffer position, normal, triangle; the voxel structure and distance; planes, plane_extras, clearance? of visibility; face_radiosity;
 //         triangle_first, triangle_ids, corners? of triangles and scene geometry (near > 0); shadow_depth, shadow_triangle, face_irradiance, scene.lights,
-//         .shadow_views (shadow=on, where no surface emits)
+//         .shadow_views (shadow=on, where no surface emits); sky_irradiance (and there is a sky)
 // writes  irradiance image RGBA32F  E_indirect at the pixel's surface, W/m²; a: sky visibility; 0 on the sky
 // runs    when the view, the voxels or the radiosity change
 // cost    pixels × rays grid walks, the first voxels of each against the triangles in them; one pass of 25 reads a pixel (and 25 more a `smooth` pass)

@@ -41,6 +41,8 @@ layout(set = 0, binding = 26) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 27, scalar) readonly buffer FaceIrradiance { vec3 faceIrradiance[]; };
 layout(constant_id = 4) const bool kCorners = false;  // triangleCorners is there
 layout(set = 0, binding = 28) uniform sampler2D triangleCorners;
+layout(constant_id = 5) const bool kSky = false;  // faceIrradiance holds the sky's light, which no shadow map tells
+layout(set = 0, binding = 29, scalar) readonly buffer SkyIrradiance { vec3 skyIrradiance[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
@@ -128,6 +130,7 @@ void main() {
       if (exact) {
         vec3 at = position.xyz + (kNearLift * n + hit.time * way.direction) * grid.h;
         vec3 change = directIrradiance(at, hit.normal, hit.triangle) - faceIrradiance[face];
+        if (kSky) change += skyIrradiance[face];
         radiosity = max(radiosity + decodeAlbedo(faces[face].albedo) * change, vec3(0.0));
       }
     }

@@ -1,0 +1,33 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+// One lane a face: E_sky = Σ (m/M) π L over the misses of its visibility row. See modules/clustered_voxel/sky/sky.h.
+#include "shared/dispatch.glsl"
+#include "shared/scene.h"
+#include "shared/visibility_rows.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0, scalar) readonly buffer RowStartBuffer { uint rowStart[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer ChunkBuffer { uvec2 chunkTable[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Info { SceneInfo info; };
+layout(set = 0, binding = 3, scalar) writeonly buffer IrradianceBuffer { vec3 irradiance[]; };
+layout(push_constant, scalar) uniform Push { uint faceCount; };
+
+void main() {
+  uint s = radivoxItemIndex();
+  if (s >= faceCount) return;
+  uint slot = rowSlot(s);
+  Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
+  uint end = rowStart[slot + 1u];
+  uint rays = 0u, misses = 0u;
+  for (uint e = rowStart[slot]; e < end; ++e) {
+    uint word = entries.words[e];
+    uint id = word & kEntryIdMask;
+    uint count = (word >> 24) + 1u;
+    rays += count;
+    if (id >= kMissBase && id < kAbsorbed) misses += count;
+  }
+  float share = rays > 0u ? float(misses) / float(rays) : 0.0;
+  irradiance[s] = 3.14159265358979 * share * info.skyRadiance;
+}
