@@ -46,7 +46,8 @@ struct Traits {
   uint32_t emissiveTriangleCount = 0;
   bool alphaMasked = false;  ///< some material has alphaMode MASK
   bool singleSided = false;  ///< some material is not double-sided
-  bool sky = false;          ///< constant sky radiance above 0
+  bool sky = false;          ///< constant sky radiance above 0, or an image
+  bool skyImage = false;
   glm::dvec3 origin{0.0};    ///< Scene::origin: world coordinates = origin + what nodes see; for files that others place
   glm::vec3 boundsMin{0.f};  ///< metres, relative to the scene origin (Scene::origin)
   glm::vec3 boundsMax{0.f};

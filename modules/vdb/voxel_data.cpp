@@ -154,7 +154,7 @@ void VoxelData::countRows() {
         const uint32_t id = entries[e] & shared::kEntryIdMask, hits = (entries[e] >> 24) + 1;
         rays += hits;
         if (id >= shared::kMissBase) {
-          if (id < shared::kMissBase + shared::kFaceCount) misses += hits;
+          if (id < shared::kAbsorbed) misses += hits;
           continue;
         }
         const uint32_t cluster = id < clusterCount ? id : labels.at(id - clusterCount);

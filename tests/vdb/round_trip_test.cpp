@@ -62,7 +62,7 @@ struct Truth {
         const uint32_t id = word & 0xffffffu, hits = (word >> 24) + 1;
         rays += hits;
         if (id >= shared::kMissBase) {
-          missed += id < shared::kMissBase + 6 ? hits : 0;
+          missed += id < shared::kAbsorbed ? hits : 0;
         } else {
           distinct.insert(id < c ? id : labels.at(id - c));
         }

@@ -15,27 +15,36 @@ graph::Port& readSky(graph::Declaration& d) {
   return port;
 }
 
+void readSkyImage(graph::Declaration& d) {
+  graph::Port& port = d.read("scene.sky", "the sky's image: means over bins and cells, texels");
+  port.optional = true;
+  port.unwanted = !d.traits.skyImage;
+  port.unwantedReason = "the sky has no image";
+}
+
 void Sky::declare(graph::Declaration& d) {
   d.read("row_start", "first entry of each face's row in its chunk");
   d.read("entries", "visibility entries");
   d.read("chunk_table", "device address of each chunk");
   d.read("scene.info", "sky radiance");
+  readSkyImage(d);
   d.write("irradiance", Shape::buffer(12, Extent::of("faces")), "E_sky of each face, W/m²");
 }
 
 void Sky::prepare(graph::PrepareContext& context) {
   constexpr auto kB = gpu::BindingType::StorageBuffer;
-  pipeline_ = gpu::Pipeline(
-      context.device(),
-      gpu::ComputePipelineInfo{.shader = "clustered_voxel/sky/sky.comp", .bindings = {kB, kB, kB, kB}, .pushConstantBytes = 4});
+  pipeline_ = gpu::Pipeline(context.device(), gpu::ComputePipelineInfo{.shader = "clustered_voxel/sky/sky.comp",
+                                                                       .bindings = {kB, kB, kB, kB, kB},
+                                                                       .pushConstantBytes = 4,
+                                                                       .constants = {{0, context.has("scene.sky") ? 1u : 0u}}});
 }
 
 void Sky::record(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const auto faceCount = static_cast<uint32_t>(context.count("faces"));
   if (faceCount == 0) return;
-  commands.bind(pipeline_,
-                {context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("scene.info"), context.buffer("irradiance")});
+  commands.bind(pipeline_, {context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("scene.info"),
+                            context.buffer("irradiance"), context.buffer(context.has("scene.sky") ? "scene.sky" : "scene.info")});
   commands.push(faceCount);
   commands.dispatchItems(faceCount, 64);
 }

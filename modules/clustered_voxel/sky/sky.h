@@ -1,6 +1,6 @@
 // clustered_voxel.sky — light of the sky on voxel faces.
 //
-// reads   row_start, entries, chunk_table of visibility; scene.info
+// reads   row_start, entries, chunk_table of visibility; scene.info; scene.sky? (the image's means over the rows' bins of directions)
 // writes  irradiance vec3 × F  E_sky = Σ (m/M) π L over the rays that left the scene, W/m²; at most π times the sky's brightest
 // runs    when the visibility or the lights change: another sky traces no ray
 // cost    Σ row lengths
@@ -30,5 +30,7 @@ class Sky : public graph::Node {
 
 /// Declares a read of the sky's light on faces, which is unwanted where the sky lights nothing that is passed on.
 graph::Port& readSky(graph::Declaration& d);
+/// Declares a read of scene.sky, which is unwanted where the sky has no image.
+void readSkyImage(graph::Declaration& d);
 
 }  // namespace radivox::clustered_voxel

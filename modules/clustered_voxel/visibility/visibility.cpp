@@ -121,8 +121,9 @@ void Visibility::prepare(graph::PrepareContext& context) {
   merge_ = make("clustered_voxel/visibility/merge.comp", 6, 20, {{0, weights_ == Weights::Seen ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 12, {});
   const auto frame = static_cast<uint32_t>(frame_);
+  const uint32_t skyImage = context.traits().skyImage ? 1 : 0;
   if (traversal_ == Traversal::Bresenham) {
-    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}});
+    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}, {7, skyImage}});
   } else {
     const auto hit = static_cast<uint32_t>(hit_);
     const uint32_t near = context.has("triangle_ids") ? 1 : 0;
@@ -135,10 +136,10 @@ void Visibility::prepare(graph::PrepareContext& context) {
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
     trace_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}});
+                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}});
     if (skip_ == Skip::Clearance)
       traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                          {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}});
+                          {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}});
   }
   std::vector<uint32_t> directions = makeDirections(rays_);
   directions.resize(shared::kShiftCount * shared::kMaxRays);

@@ -7,11 +7,13 @@
 #include "shared/visibility_rows.glsl"
 
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool kImage = false;
 
 layout(set = 0, binding = 0, scalar) readonly buffer RowStartBuffer { uint rowStart[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer ChunkBuffer { uvec2 chunkTable[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer Info { SceneInfo info; };
 layout(set = 0, binding = 3, scalar) writeonly buffer IrradianceBuffer { vec3 irradiance[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer SkyBuffer { vec3 sky[]; };  // kSkyBinCount means
 layout(push_constant, scalar) uniform Push { uint faceCount; };
 
 void main() {
@@ -21,13 +23,16 @@ void main() {
   Entries entries = chunkEntries(chunkTable[s / kRowsPerChunk]);
   uint end = rowStart[slot + 1u];
   uint rays = 0u, misses = 0u;
+  vec3 sum = vec3(0.0);
   for (uint e = rowStart[slot]; e < end; ++e) {
     uint word = entries.words[e];
     uint id = word & kEntryIdMask;
     uint count = (word >> 24) + 1u;
     rays += count;
-    if (id >= kMissBase && id < kAbsorbed) misses += count;
+    if (id < kMissBase || id >= kAbsorbed) continue;
+    misses += count;
+    if (kImage) sum += float(count) * sky[id - kMissBase];
   }
-  float share = rays > 0u ? float(misses) / float(rays) : 0.0;
-  irradiance[s] = 3.14159265358979 * share * info.skyRadiance;
+  sum += float(misses) * info.skyRadiance;
+  irradiance[s] = rays > 0u ? 3.14159265358979 / float(rays) * sum : vec3(0.0);
 }
