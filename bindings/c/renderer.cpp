@@ -17,7 +17,7 @@ uint64_t planVersionOf(const graph::Graph& graph) {
 bool isSamePlanFor(const scene::Traits& a, const scene::Traits& b) {
   return a.directionalLightCount == b.directionalLightCount && a.pointLightCount == b.pointLightCount &&
          a.spotLightCount == b.spotLightCount && a.emissiveTriangleCount == b.emissiveTriangleCount && a.sky == b.sky &&
-         a.emittersByRays == b.emittersByRays;
+         a.skyImage == b.skyImage && a.emittersByRays == b.emittersByRays;
 }
 
 graph::Shape shapeOf(const RadivoxImport& import) {

@@ -38,6 +38,7 @@ std::vector<Absence> listAbsences(const scene::Traits& traits, const scene::Requ
            "their exact shadow edges"},
           {Feature::Emitters, "emitters", unless(traits.emissiveTriangleCount > 0, "nothing in the scene emits"),
            "sums of emission; closed form and samples in direct light"},
+          {Feature::Sky, "sky", unless(traits.sky, "the scene has none"), "its light on near surfaces"},
           {Feature::Bounces, "indirect light", bounces, ""},
           {Feature::Matrix, "light between clusters", unless(request.bounces != 1 || traits.emittersByRays, "one bounce is asked for"), ""},
           {Feature::OtherLights, "other lights", sole, "the loop over lights, and what lights of other kinds do"},

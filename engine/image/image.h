@@ -25,6 +25,8 @@ void writeExr(const std::string& path, const std::vector<Layer>& layers);
 /// Every layer of every scanline or tiled part, half, float or integer, over the data window. Channels without a layer: R, G, B, A and Y
 /// make "color", any other is a layer of its own name. Throws BadInput naming file and mend.
 std::vector<Layer> readExr(const std::string& path);
+/// Radiance .hdr (RGBE): three channels, linear. Throws BadInput naming file and mend.
+Image readHdr(const std::string& path);
 /// 8-bit sRGB from values already display-referred in [0, 1] (linear → sRGB encoding applied here; a fourth channel is alpha and stays
 /// linear). 1, 3 or 4 channels. NaN is an error that names the pixel.
 void writePng(const std::string& path, const Image& linear);

@@ -10,6 +10,8 @@
 #include "engine/scene/geometry.h"
 #include "engine/scene/gltf.h"
 #include "engine/scene/gltf_mesh.h"
+#include "engine/scene/sky.h"
+#include "engine/text.h"
 
 namespace radivox::scene {
 
@@ -221,6 +223,33 @@ void readSky(const Document& document, const tinygltf::Scene* gltfScene, Scene& 
   }
 }
 
+/// {"uri": …, "scale": …, "turn": …, "sun": "keep"}: what --sky says, beside the file.
+void readSkyImage(const Document& document, const tinygltf::Scene* gltfScene, Scene& scene) {
+  if (gltfScene == nullptr || !gltfScene->extras.Has("radivox") || !gltfScene->extras.Get("radivox").Has("sky")) return;
+  const tinygltf::Value& sky = gltfScene->extras.Get("radivox").Get("sky");
+  const std::string place = placeOf("scenes", static_cast<size_t>(gltfScene - document.model().scenes.data())) + ".extras.radivox.sky";
+  const auto isText = [&sky](const char* key) { return sky.Get(key).IsString() && !sky.Get(key).Get<std::string>().empty(); };
+  const auto isNumber = [&sky](const char* key) { return !sky.Has(key) || sky.Get(key).IsNumber(); };
+  if (!sky.IsObject() || !sky.Has("uri") || !isText("uri") || !isNumber("scale") || !isNumber("turn") || (sky.Has("sun") && !isText("sun")))
+    document.fail(place,
+                  "should be {\"uri\": \"FILE.exr\"} with, as one likes, numbers \"scale\" and \"turn\" and \"sun\": \"keep\"; correct it");
+  const std::string uri = sky.Get("uri").Get<std::string>();
+  const bool builtin = uri.rfind("builtin:", 0) == 0;
+  if (!builtin && (uri.find(':') != std::string::npos || uri.front() == '/'))
+    document.fail(place + ".uri", "is not a file beside this one; put it there and name it");
+  std::string spec = builtin ? uri : (std::filesystem::path(document.path()).parent_path() / uri).string();
+  spec += "?sun=" + (sky.Has("sun") ? sky.Get("sun").Get<std::string>() : "light");
+  for (const char* key : {"scale", "turn"}) {
+    if (sky.Has(key)) spec += "&" + std::string(key) + "=" + printNumber(sky.Get(key).GetNumberAsDouble(), 9);
+  }
+  try {
+    scene.sky = loadSky(spec);
+  } catch (const Error& error) {
+    throw Error(error.code(), document.path() + ": " + place + ": " + error.what());
+  }
+  scene.warnings.insert(scene.warnings.end(), scene.sky->notes.begin(), scene.sky->notes.end());
+}
+
 bool primitivesLackMaterial(const Document& document) {
   for (const tinygltf::Mesh& mesh : document.model().meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
@@ -301,6 +330,7 @@ Scene importChecked(const std::string& path) {
   gltf::MeshReader meshes(document, coordinates, scene, warnings);
   const tinygltf::Scene* gltfScene = findScene(document);
   readSky(document, gltfScene, scene);
+  readSkyImage(document, gltfScene, scene);
 
   const std::vector<PlacedNode> placedNodes = placeNodes(document, gltfScene, warnings);
   Assembly assembly = reserveFor(document, placedNodes, meshes);
@@ -346,7 +376,7 @@ Scene importChecked(const std::string& path) {
   if (scene.triangleCount() == 0)
     scene.warnings.push_back("the scene has no triangles");
   else if (!traits.lit())
-    scene.warnings.push_back("the scene has no light: no lights, no emissive surface, no sky");
+    scene.warnings.push_back(kNoLightWarning);
   return scene;
 }
 

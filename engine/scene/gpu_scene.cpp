@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "engine/scene/sky.h"
 #include "engine/scene/texture.h"
+#include "shaders/shared/sky.h"
 #include "shaders/shared/voxel_codec.h"
 
 namespace radivox::scene {
@@ -61,6 +63,10 @@ void countGeometry(const Scene& scene, graph::Counts& counts) {
   counts["textures"] = scene.textures.size();
 }
 
+void countSky(const Scene& scene, graph::Counts& counts) {
+  counts["sky_texels"] = scene.sky ? shared::kSkyFirstTexel + scene.sky->texels.size() : 0;
+}
+
 void countLights(const LightSetup& setup, graph::Counts& counts) {
   counts["lights"] = setup.lights.size();
   counts["shadow_views"] = setup.views.size();
@@ -81,6 +87,7 @@ std::vector<graph::Import> listImports() {
       {"scene.lights", Shape::buffer(sizeof(shared::Light), Extent::of("lights"))},
       {"scene.shadow_views", Shape::buffer(sizeof(shared::ShadowView), Extent::of("shadow_views"))},
       {"scene.emissive_triangles", Shape::buffer(sizeof(shared::EmissiveTriangle), Extent::of("emissive_triangles"))},
+      {"scene.sky", Shape::buffer(sizeof(glm::vec3), Extent::of("sky_texels"))},
       {"view.camera", Shape::buffer(sizeof(shared::Camera), 1)},
   };
 }
@@ -92,6 +99,7 @@ SceneShapes describeShapes(const Scene& scene, const LightOptions& options, uint
   shapes.imports = listImports();
   countGeometry(scene, shapes.counts);
   countLights(setUpLights(scene, options), shapes.counts);
+  countSky(scene, shapes.counts);
   shapes.counts["width"] = width;
   shapes.counts["height"] = height;
   return shapes;
@@ -144,6 +152,19 @@ void GpuScene::uploadTextures(const Scene& scene) {
   textureTable_ = makeBuffer(device_, "scene.textures", table);
 }
 
+void GpuScene::uploadSky(const Scene& scene) {
+  if (sky_ && scene.sky == uploadedSky_) return;
+  std::vector<glm::vec3> values;
+  if (scene.sky) {
+    for (const std::vector<glm::vec3>* part : {&scene.sky->bins, &scene.sky->cells, &scene.sky->texels})
+      values.insert(values.end(), part->begin(), part->end());
+  }
+  checkRange(device_, scene, "sky", values.size() * sizeof(glm::vec3));
+  sky_ = makeBuffer(device_, "scene.sky", values);
+  uploadedSky_ = scene.sky;
+  ++skyVersion_;
+}
+
 void GpuScene::setLights(const Scene& scene) {
   const LightSetup setup = setUpLights(scene, options_);
   const Traits traits = scene.traits();
@@ -161,6 +182,13 @@ void GpuScene::setLights(const Scene& scene) {
   info.shadowViewCount = static_cast<uint32_t>(setup.views.size());
   info.emissiveArea = static_cast<float>(traits.emissiveArea);
   info.emitterSampleCount = setup.emitterSampleCount;
+  if (scene.sky) {
+    info.skyWidth = scene.sky->width;
+    info.skyHeight = scene.sky->height;
+    info.skyTurn = scene.sky->turn;
+  }
+  uploadSky(scene);
+  countSky(scene, counts_);
   info_ = makeHostBuffer(device_, "scene.info", std::vector<shared::SceneInfo>{info});
   countLights(setup, counts_);
   notes_ = setup.notes;
@@ -188,6 +216,7 @@ void GpuScene::importInto(graph::Executor& executor) const {
   executor.importBuffer("scene.info", info_, lightVersion_);
   executor.importBuffer("scene.lights", lights_, lightVersion_);
   executor.importBuffer("scene.shadow_views", shadowViews_, lightVersion_);
+  executor.importBuffer("scene.sky", sky_, skyVersion_);
   executor.importBuffer("view.camera", camera_, cameraVersion_);
 }
 

@@ -27,13 +27,14 @@ struct LightOptions {
 ///   scene.materials shared::Material    scene.textures shared::Texture (texels by device address)
 ///   scene.info      shared::SceneInfo   scene.lights shared::Light  scene.shadow_views shared::ShadowView
 ///   scene.emissive_triangles shared::EmissiveTriangle               view.camera shared::Camera
+///   scene.sky       vec3: bins, cells and texels of the sky's image (shaders/shared/sky.h); empty without one
 /// scene.shadow_views is host visible (MemoryKind::Upload): frame.shadow_map reads the tiles from it while it records.
 class GpuScene {
  public:
   GpuScene(gpu::Device& device, const Scene& scene, const LightOptions& options = {});
 
   // The setters need a device that is done with earlier frames; call importInto again after them.
-  /// Lights and sky of `scene`: new versions of scene.info, .lights, .shadow_views. Geometry keeps its version. Counts of lights and
+  /// Lights and sky of `scene`: new versions of scene.info, .lights, .shadow_views; of scene.sky where it is another. Geometry keeps its version. Counts of lights and
   /// shadow layers may change, and with them a plan's shapes.
   void setLights(const Scene& scene);
   /// A new version of the geometry, which is the same: everything that depends on it runs again. For measuring what that costs.
@@ -43,18 +44,21 @@ class GpuScene {
 
   std::vector<graph::Import> imports() const;
   /// triangles, vertices, materials, lights, shadow_views, shadow_resolution (side of a layer), shadow_layers, emitter_samples,
-  /// emissive_triangles, width, height. The shadow image is shadow_resolution² × shadow_layers.
+  /// emissive_triangles, sky_texels (of scene.sky), width, height. The shadow image is shadow_resolution² × shadow_layers.
   graph::Counts counts() const;
   /// What had to be lowered to fit (LightSetup::notes), one line each.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   void uploadTextures(const Scene& scene);
+  void uploadSky(const Scene& scene);
   gpu::Device& device_;
   LightOptions options_;
   gpu::Buffer vertices_, indices_, triangleMaterials_, materials_, textureTable_, info_, lights_, shadowViews_, emissive_, camera_;
   std::vector<gpu::Buffer> texels_;
-  uint64_t geometryVersion_ = 1, lightVersion_ = 1, cameraVersion_ = 1;
+  gpu::Buffer sky_;
+  std::shared_ptr<const Sky> uploadedSky_;
+  uint64_t geometryVersion_ = 1, lightVersion_ = 1, cameraVersion_ = 1, skyVersion_ = 1;
   graph::Counts counts_;
   std::vector<std::string> notes_;
 };

@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/light_setup.h"
+#include "engine/scene/sky.h"
 
 namespace radivox::scene {
 
@@ -36,6 +37,12 @@ std::vector<shared::Light> listLights(const Scene& scene, const std::vector<shar
   std::vector<shared::Light> lights;
   for (const PunctualLight& light : scene.lights) {
     if (light.intensity != glm::vec3(0.f)) lights.push_back(toLight(light));
+  }
+  if (scene.sky) {
+    for (const PunctualLight& sun : scene.sky->suns) {
+      lights.push_back(toLight(sun));
+      lights.back().triangle = shared::kSkySun;
+    }
   }
   const auto samples = sampleEmitters(scene, emitters, emitterSamples);
   lights.insert(lights.end(), samples.begin(), samples.end());

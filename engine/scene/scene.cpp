@@ -8,6 +8,7 @@
 #include "engine/scene/builtin.h"
 #include "engine/scene/geometry.h"
 #include "engine/scene/gltf.h"
+#include "engine/scene/sky.h"
 
 namespace radivox::scene {
 
@@ -35,7 +36,9 @@ Scene loadBuiltin(const std::string& text) {
 
 }  // namespace
 
-Scene loadScene(const std::string& scene) {
+namespace {
+
+Scene loadWithItsSky(const std::string& scene) {
   constexpr std::string_view kPrefix = "builtin:";
   if (scene.rfind(kPrefix, 0) == 0) return loadBuiltin(scene.substr(kPrefix.size()));
   if (scene.empty()) throw Error(ErrorCode::BadInput, "no scene is named; give a .gltf or .glb file, or builtin:atrium");
@@ -50,17 +53,31 @@ Scene loadScene(const std::string& scene) {
   return importGltf(scene);
 }
 
+}  // namespace
+
+Scene loadScene(const std::string& name, const std::string& sky) {
+  Scene scene = loadWithItsSky(name);
+  if (sky.empty()) return scene;
+  scene.skyRadiance = glm::vec3(0.f);
+  scene.sky = loadSky(sky);
+  std::erase(scene.warnings, kNoLightWarning);
+  scene.warnings.insert(scene.warnings.end(), scene.sky->notes.begin(), scene.sky->notes.end());
+  return scene;
+}
+
 Traits Scene::traits() const {
   Traits t;
   t.triangleCount = triangleCount();
   t.vertexCount = vertices.size();
   t.materialCount = static_cast<uint32_t>(materials.size());
   t.textureCount = static_cast<uint32_t>(textures.size());
-  for (const auto& light : lights) {
+  const auto count = [&t](const PunctualLight& light) {
     if (light.type == shared::kLightDirectional) ++t.directionalLightCount;
     if (light.type == shared::kLightPoint) ++t.pointLightCount;
     if (light.type == shared::kLightSpot) ++t.spotLightCount;
-  }
+  };
+  std::for_each(lights.begin(), lights.end(), count);
+  if (sky) std::for_each(sky->suns.begin(), sky->suns.end(), count);
   for (const auto& material : materials) {
     if ((material.flags & shared::kMaterialAlphaMask) != 0u) t.alphaMasked = true;
     if ((material.flags & shared::kMaterialDoubleSided) == 0u) t.singleSided = true;
@@ -71,7 +88,8 @@ Traits Scene::traits() const {
     if (materials[m].albedo != glm::vec3(0.f)) t.reflects = true;
     if (t.reflects) break;
   }
-  t.sky = skyRadiance != glm::vec3(0.f);
+  t.skyImage = sky != nullptr;
+  t.sky = skyRadiance != glm::vec3(0.f) || t.skyImage;
   if (!indices.empty()) {
     t.boundsMin = t.boundsMax = vertices[indices[0]].position;
     for (const uint32_t i : indices) {

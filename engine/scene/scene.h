@@ -1,10 +1,11 @@
-// A scene as Radivox lights it: flattened world-space triangles, Lambertian materials, lights, cameras, a constant sky.
+// A scene as Radivox lights it: flattened world-space triangles, Lambertian materials, lights, cameras, a sky.
 // Positions are float metres relative to `origin` (double), so that a scene a million metres away keeps its precision.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,8 @@ struct CameraDescription {
   float zfar = 1e3f;    ///< m; orthographic only (perspective ends nowhere)
 };
 
+struct Sky;  // engine/scene/sky.h
+
 struct Scene {
   std::string name;
   glm::dvec3 origin{0.0};
@@ -54,15 +57,19 @@ struct Scene {
   std::vector<TextureImage> textures;
   std::vector<PunctualLight> lights;
   std::vector<CameraDescription> cameras;  ///< at least one (a default view of the bounds is made when the file has none)
-  glm::vec3 skyRadiance{0.f};
-  std::vector<std::string> warnings;  ///< one line each; what was left out of the file and why
+  glm::vec3 skyRadiance{0.f};              ///< constant over the sphere, W/(m² sr); adds to `sky`
+  std::shared_ptr<const Sky> sky;          ///< an image; null: none
+  std::vector<std::string> warnings;       ///< one line each; what was left out of the file and why
 
   size_t triangleCount() const { return indices.size() / 3; }
   Traits traits() const;
 };
 
 /// SCENE of the command line: a .gltf/.glb path or builtin:NAME[?key=value&…]. Throws BadInput naming file, place and mend.
-Scene loadScene(const std::string& scene);
+/// `sky`, where it is not empty, takes the place of the scene's own (loadSky in engine/scene/sky.h).
+Scene loadScene(const std::string& scene, const std::string& sky = "");
+/// Warning of importGltf.
+constexpr const char* kNoLightWarning = "the scene has no light: no lights, no emissive surface, no sky";
 
 /// By name or index; throws BadInput with the names there are.
 const CameraDescription& findCamera(const Scene& scene, const std::string& nameOrIndex);

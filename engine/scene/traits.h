@@ -25,6 +25,7 @@ enum class Feature : uint32_t {
   Readers,      ///< nodes and pictures that nobody asked for
   OtherLights,  ///< more lights than one, and of other kinds
   DarkViews,    ///< shadow maps where no face is, and lights that end before the nearest
+  Sky,
   Count
 };
 constexpr uint32_t kKeepAll = ~0u;
@@ -45,7 +46,8 @@ struct Traits {
   uint32_t emissiveTriangleCount = 0;
   bool alphaMasked = false;  ///< some material has alphaMode MASK
   bool singleSided = false;  ///< some material is not double-sided
-  bool sky = false;          ///< constant sky radiance above 0
+  bool sky = false;          ///< constant sky radiance above 0, or an image
+  bool skyImage = false;
   glm::dvec3 origin{0.0};    ///< Scene::origin: world coordinates = origin + what nodes see; for files that others place
   glm::vec3 boundsMin{0.f};  ///< metres, relative to the scene origin (Scene::origin)
   glm::vec3 boundsMax{0.f};
@@ -71,6 +73,7 @@ struct Traits {
     return directionalLightCount > 0 ? shared::kLightDirectional : pointLightCount > 0 ? shared::kLightPoint : shared::kLightSpot;
   }
   bool hasPunctualLights() const { return punctualLightCount() > 0 || keeps(Feature::PunctualLights); }
+  bool hasSky() const { return sky || keeps(Feature::Sky); }
   bool hasEmitters() const { return emissiveTriangleCount > 0 || keeps(Feature::Emitters); }
   /// Emission reaches clusters by rays; where nothing emits but is kept, so does nothing.
   bool hasEmissionByRays() const { return emittersByRays || (emissiveTriangleCount == 0 && keeps(Feature::Emitters)); }

@@ -11,6 +11,7 @@
 #include "modules/clustered_voxel/inspect/inspect.h"
 #include "modules/clustered_voxel/mark/mark.h"
 #include "modules/clustered_voxel/shade/shade.h"
+#include "modules/clustered_voxel/sky/sky.h"
 #include "modules/clustered_voxel/stability.h"
 #include "modules/clustered_voxel/visibility/transfer.h"
 #include "modules/clustered_voxel/visibility/visibility.h"
@@ -34,6 +35,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Cluster>("groups faces that lie near each other and face the same way");
   registry.add<Members>("what each cluster holds, and its means");
   registry.add<Transfer>("form factors between clusters, a sparse matrix");
+  registry.add<Sky>("light of the sky on voxel faces, from the rays that left the scene");
   registry.add<Inject>("direct light at voxel faces, by shadow-map flux or the paper's points");
   registry.add<Bounce>("light that surfaces pass on among themselves, to a stated residual");
   registry.add<Mark>("voxel faces that this view needs");

@@ -14,9 +14,18 @@ void Composite::declare(graph::Declaration& d) {
   graph::Port& indirect = d.read("indirect", "E_indirect, W/m²; a: sky visibility");
   indirect.optional = true;
   const char* nothingBounces = d.traits.whyNothingBounces();
-  indirect.unwanted =
-      !d.traits.sky && (!d.request.wantsIndirect() || nothingBounces != nullptr) && !d.traits.keeps(scene::Feature::Bounces);
+  indirect.unwanted = (!d.traits.sky || d.traits.skyImage) && (!d.request.wantsIndirect() || nothingBounces != nullptr) &&
+                      !d.traits.keeps(scene::Feature::Bounces);
   indirect.unwantedReason = !d.request.wantsIndirect() ? "0 bounces asked for and no sky" : nothingBounces != nullptr ? nothingBounces : "";
+  const auto readImage = [&d](const char* name, const char* meaning) {
+    graph::Port& port = d.read(name, meaning);
+    port.optional = true;
+    port.unwanted = !d.traits.skyImage;
+    port.unwantedReason = "the sky has no image";
+  };
+  readImage("sky", "E_sky, W/m²");
+  readImage("scene.sky", "the sky's image");
+  readImage("view.camera", "Camera");
   const Shape shape = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
   d.write("color", shape, "radiance, W/(m² sr); a: 1 surface, 0 sky");
   d.write("direct", shape, "ρ E_direct / π, with the sky's light").optional = true;
@@ -26,15 +35,18 @@ void Composite::declare(graph::Declaration& d) {
 
 void Composite::prepare(graph::PrepareContext& context) {
   constexpr auto kI = BindingType::StorageImage;
-  pipeline_ =
-      gpu::Pipeline(context.device(), gpu::ComputePipelineInfo{.shader = "frame/composite.comp",
-                                                               .bindings = {kI, kI, kI, kI, BindingType::StorageBuffer, kI, kI, kI, kI},
-                                                               .constants = {{0, context.has("irradiance")},
-                                                                             {1, context.has("indirect")},
-                                                                             {2, context.request().wantsIndirect()},
-                                                                             {3, context.has("direct")},
-                                                                             {4, context.has("indirect_radiance")},
-                                                                             {5, context.has("irradiance_direct")}}});
+  constexpr auto kB = BindingType::StorageBuffer;
+  hasBackground_ = context.has("scene.sky") && context.has("view.camera");
+  pipeline_ = gpu::Pipeline(context.device(), gpu::ComputePipelineInfo{.shader = "frame/composite.comp",
+                                                                       .bindings = {kI, kI, kI, kI, kB, kI, kI, kI, kI, kI, kB, kB},
+                                                                       .constants = {{0, context.has("irradiance")},
+                                                                                     {1, context.has("indirect")},
+                                                                                     {2, context.request().wantsIndirect()},
+                                                                                     {3, context.has("direct")},
+                                                                                     {4, context.has("indirect_radiance")},
+                                                                                     {5, context.has("irradiance_direct")},
+                                                                                     {6, context.has("sky")},
+                                                                                     {7, hasBackground_}}});
 }
 
 void Composite::record(graph::RecordContext& context) {
@@ -42,7 +54,9 @@ void Composite::record(graph::RecordContext& context) {
   gpu::Image& color = context.image("color");
   const auto find = [&](const char* port) -> const gpu::Image& { return context.has(port) ? context.image(port) : absent_; };
   commands.bind(pipeline_, {context.image("albedo"), context.image("emission"), find("irradiance"), find("indirect"),
-                            context.buffer("scene.info"), color, find("direct"), find("indirect_radiance"), find("irradiance_direct")});
+                            context.buffer("scene.info"), color, find("direct"), find("indirect_radiance"), find("irradiance_direct"),
+                            find("sky"), context.buffer(hasBackground_ ? "scene.sky" : "scene.info"),
+                            context.buffer(hasBackground_ ? "view.camera" : "scene.info")});
   commands.dispatch((color.info().width + 7) / 8, (color.info().height + 7) / 8);
 }
 

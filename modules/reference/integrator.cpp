@@ -105,10 +105,32 @@ glm::vec3 sampleEmitter(const PathTracer::Impl& scene, const Surface& s, const g
   return y.emission * static_cast<float>(static_cast<double>(cosine * weight) / density);
 }
 
+/// Irradiance from a point of the sky's image, likewise.
+glm::vec3 sampleSky(const PathTracer::Impl& scene, const Surface& s, const glm::vec3& from, Sampler& sampler) {
+  const auto [u, v] = sampler.next2D();
+  const SkySample sky = scene.skyDistribution.sample(*scene.skyImage, u, v);
+  const float cosine = glm::dot(s.shading, sky.direction);
+  if (!(sky.density > 0) || !(cosine > 0.f) || !(glm::dot(s.geometric, sky.direction) > 0.f)) return glm::vec3(0.f);
+  // Where surfaces have one side, what a path sees counts, so that both ways see the same.
+  Surface ignored;
+  if (scene.obeysSides ? scene.findSurface(from, sky.direction, 0.f, kInfinity, ignored) : scene.isBlockedAlong(from, sky.direction))
+    return glm::vec3(0.f);
+  const float weight = misWeight(sky.density, static_cast<double>(cosine / kPi));
+  return sky.radiance * static_cast<float>(static_cast<double>(cosine * weight) / sky.density);
+}
+
+/// Radiance of the sky as the path's own direction finds it.
+glm::vec3 foundSky(const PathTracer::Impl& scene, const glm::vec3& d, float cosine) {
+  if (!scene.skyImage) return scene.sky;
+  const glm::vec3 image = scene.skyImage->radiance(d);
+  return scene.sky + misWeight(static_cast<double>(cosine / kPi), scene.skyDistribution.density(image)) * image;
+}
+
 glm::vec3 sampleLights(const PathTracer::Impl& scene, const Surface& s, const glm::vec3& from, Sampler& sampler) {
   glm::vec3 irradiance(0.f);
   if (!scene.lights.empty()) irradiance += samplePunctual(scene, s, from, sampler);
   if (scene.hasEmitters()) irradiance += sampleEmitter(scene, s, from, sampler);
+  if (scene.skyImage) irradiance += sampleSky(scene, s, from, sampler);
   return irradiance;
 }
 
@@ -120,7 +142,8 @@ Irradiance sampleIrradiance(const PathTracer::Impl& scene, const Surface& surfac
   glm::vec3 from = s.position + s.geometric * s.clearance;
   result.direct = sampleLights(scene, s, from, sampler);
   // Emitters and sky are also found by the path's own directions, which therefore go one step further than the last reflection.
-  const bool lightIsFound = (scene.hasEmitters() && !scene.obeysSides) || scene.sky != glm::vec3(0.f) || scene.hasUnsampledEmitters;
+  const bool lightIsFound =
+      (scene.hasEmitters() && !scene.obeysSides) || scene.sky != glm::vec3(0.f) || scene.skyImage || scene.hasUnsampledEmitters;
   glm::vec3 throughput(1.f);  // of reflected light so far
   for (uint32_t depth = 0; depth < bounces || lightIsFound; ++depth) {
     const auto [u, v] = sampler.next2D();
@@ -130,7 +153,7 @@ Irradiance sampleIrradiance(const PathTracer::Impl& scene, const Surface& surfac
     glm::vec3& arriving = depth == 0 ? result.direct : result.indirect;
     Surface hit;
     if (!scene.findSurface(from, d, 0.f, kInfinity, hit)) {
-      arriving += kPi * throughput * scene.sky;
+      arriving += kPi * throughput * foundSky(scene, d, cosine);
       break;
     }
     const double areaDensity = scene.emitterDensity(hit.triangle);

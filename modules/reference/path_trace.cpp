@@ -13,8 +13,9 @@ using graph::Shape;
 
 namespace {
 
-constexpr const char* kScenePorts[] = {"scene.vertices", "scene.indices", "scene.triangle_materials", "scene.materials", "scene.textures",
-                                       "scene.info",     "scene.lights"};
+constexpr const char* kScenePorts[] = {"scene.vertices",  "scene.indices",  "scene.triangle_materials",
+                                       "scene.materials", "scene.textures", "scene.info",
+                                       "scene.lights",    "scene.sky"};
 
 struct Result {
   const char* port;
@@ -46,7 +47,13 @@ PathTrace::PathTrace()
                              params::Invalidates::Rerun)}) {}
 
 void PathTrace::declare(graph::Declaration& d) {
-  for (const char* port : kScenePorts) d.read(port, "the scene", graph::UseTransfer | graph::UseCompute);
+  for (const char* port : kScenePorts) {
+    graph::Port& read = d.read(port, "the scene", graph::UseTransfer | graph::UseCompute);
+    if (std::string_view(port) != "scene.sky") continue;
+    read.optional = true;
+    read.unwanted = !d.traits.skyImage;
+    read.unwantedReason = "the sky has no image";
+  }
   d.read("view.camera", "Camera", graph::UseTransfer);
   for (const Result& result : kResults) {
     d.write(result.port, Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height")), result.meaning).optional =
@@ -108,7 +115,7 @@ void PathTrace::stepDone(graph::RecordContext& context) {
 
 bool PathTrace::sceneChanged(graph::RecordContext& context) const {
   bool changed = !tracer_;
-  for (const char* port : kScenePorts) changed = changed || context.changed(port);
+  for (const char* port : kScenePorts) changed = changed || (context.has(port) && context.changed(port));
   return changed;
 }
 

@@ -1,8 +1,8 @@
 // Unbiased path tracer on Embree: the truth that every method is measured against (METHODS section 5). Usable without a graph.
 //
 // what      radiance, and its parts as `radivox render` has them, in pixels or at given points; with the variance of every mean
-// light     directional, point and spot lights, emissive triangles (front side), a constant sky; Lambertian surfaces with textures
-// estimator next-event estimation, multiple importance sampling of emitters, Russian roulette, no clamping; box filter one pixel wide
+// light     directional, point and spot lights, emissive triangles (front side), a sky (constant, image); Lambertian surfaces with textures
+// estimator next-event estimation, multiple importance sampling of emitters and the sky's image, Russian roulette, no clamping; box filter one pixel wide
 // bounces   indirect bounces as in scene::Request: 0 direct light only, 1 light → surface → surface → eye, kAllBounces all of them
 // bits      the same for any number of threads, however the work was cut into pauses, checkpoints and resumes
 //

@@ -85,7 +85,7 @@ Channels tracePixel(const PathTracer::Impl& scene, const CameraRays& camera, con
     camera.cast((x + u) / settings.width * 2.0 - 1.0, (y + v) / settings.height * 2.0 - 1.0, origin, direction, tNear, tFar);
     Surface surface;
     if (!scene.findSurface(origin, direction, tNear, tFar, surface)) {
-      put(sum, 0, scene.sky);
+      put(sum, 0, scene.skyImage ? scene.sky + scene.skyImage->interpolated(direction) : scene.sky);
       continue;
     }
     const Irradiance e = sampleIrradiance(scene, surface, settings.bounces, sampler);

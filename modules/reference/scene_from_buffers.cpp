@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "engine/scene/sky.h"
+#include "shaders/shared/sky.h"
+
 namespace radivox::reference {
 
 namespace {
@@ -27,8 +30,18 @@ scene::Scene readScene(graph::RecordContext& context) {
   scene.triangleMaterials = readItems<uint32_t>(context, "scene.triangle_materials", context.count("triangles"));
   scene.materials = readItems<shared::Material>(context, "scene.materials", context.count("materials"));
   scene.skyRadiance = info.skyRadiance;
+  if (info.skyWidth > 0) {
+    auto sky = std::make_shared<scene::Sky>();
+    sky->width = info.skyWidth;
+    sky->height = info.skyHeight;
+    sky->turn = info.skyTurn;
+    const auto values = readItems<glm::vec3>(context, "scene.sky", context.count("sky_texels"));
+    sky->texels.assign(values.begin() + shared::kSkyFirstTexel, values.end());
+    scene.sky = std::move(sky);
+  }
   for (const shared::Light& light : readItems<shared::Light>(context, "scene.lights", info.lightCount)) {
     if (light.type == shared::kLightEmitterSample) continue;  // the emissive triangles themselves are sampled here
+    if (light.triangle == shared::kSkySun) continue;          // and the sky's texels
     scene::PunctualLight out;
     out.type = light.type;
     out.position = light.position;

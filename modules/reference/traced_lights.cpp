@@ -46,9 +46,11 @@ PathTracer::Impl::Impl(const scene::Scene& scene, Sides sides)
       materials(scene.materials),
       textures(scene.textures),
       sky(scene.skyRadiance),
+      skyImage(scene.sky),
       obeysSides(sides == Sides::Gltf && scene.traits().singleSided) {
   listTriangles();
   listLights(scene);
+  if (skyImage) skyDistribution = SkyDistribution(*skyImage);
   Hash hash;
   hash.add(vertices);
   hash.add(indices);
@@ -61,6 +63,11 @@ PathTracer::Impl::Impl(const scene::Scene& scene, Sides sides)
   }
   hash.add(lights);
   hash.add(&sky, sizeof(sky));
+  if (skyImage) {
+    hash.add(skyImage->texels);
+    hash.add(&skyImage->width, sizeof(skyImage->width));
+    hash.add(&skyImage->turn, sizeof(skyImage->turn));
+  }
   hash.add(&obeysSides, sizeof(obeysSides));
   fingerprint = hash.value();
   buildHierarchy();

@@ -8,7 +8,9 @@
 
 #include <array>
 
+#include "engine/scene/sky.h"
 #include "modules/reference/path_tracer.h"
+#include "modules/reference/sky_distribution.h"
 
 namespace radivox::reference {
 
@@ -76,7 +78,10 @@ struct PathTracer::Impl {
   std::vector<scene::TextureImage> textures;
   std::vector<Punctual> lights;
   std::vector<double> lightShares;  ///< cumulative, for choosing among many; the last is 1
-  glm::vec3 sky{0.f};
+  glm::vec3 sky{0.f};               ///< the constant part
+  /// Its texels, suns and all; even over each for light, bilinear behind the scene. Null: none.
+  std::shared_ptr<const scene::Sky> skyImage;
+  SkyDistribution skyDistribution;
   float largestCoordinate = 0.f;
   bool obeysSides = false;  ///< back faces of single-sided materials are not there, and some are single-sided
 

@@ -155,7 +155,7 @@ void VoxelData::countRows() {
       shared::forEachRowEntry(words.data(), starts[s - firstFace], starts[s - firstFace + 1], idCount, [&](uint32_t id, uint32_t hits) {
         rays += hits;
         if (id >= shared::kMissBase) {
-          if (id < shared::kMissBase + shared::kFaceCount) misses += hits;
+          if (id < shared::kAbsorbed) misses += hits;
           return;
         }
         const uint32_t cluster = id < clusterCount ? id : labels.at(id - clusterCount);

@@ -36,7 +36,7 @@ int runGraph(const Options& options) {
   Job job;
   prepareJob(options, true, job);
   const int deviceIndex = parseDevice(options.device);
-  const scene::Scene scene = scene::loadScene(options.scene);
+  const scene::Scene scene = scene::loadScene(options.scene, options.sky);
   scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   const gpu::Capabilities capabilities = findCapabilities(deviceIndex);
   const scene::SceneShapes shapes = scene::describeShapes(scene, job.lights, job.request.width, job.request.height);
@@ -77,6 +77,8 @@ int runScene(const Options& options) {
   const bool isNamed = options.scene.rfind("builtin:", 0) != 0 && extension != ".gltf" && extension != ".glb";
   const scene::Scene scene = scene::loadScene(isNamed ? "builtin:" + options.scene : options.scene);
   for (const std::string& warning : scene.warnings) std::cerr << "radivox: warning: " << warning << "\n";
+  if (scene.sky)
+    std::cerr << "radivox: warning: a .glb holds no image of a sky; name it beside, in scenes[0].extras.radivox.sky, or give --sky\n";
   scene::exportGlb(scene, path);
   return 0;
 }

@@ -55,8 +55,20 @@ void addGraphOption(CLI::App* command, Options& options, const std::string& fall
       ->type_name("NAME|FILE.json");
 }
 
+void addSkyOption(CLI::App* command, Options& options) {
+  command
+      ->add_option("--sky", options.sky,
+                   "instead of the scene's sky: an equirectangular image or builtin:clear, with ?scale=X&turn=DEGREES&sun=keep")
+      ->type_name("FILE.exr|.hdr");
+}
+
+void addSceneOptions(CLI::App* command, Options& options, const std::string& fallback = "") {
+  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]" + fallback)->type_name("");
+  addSkyOption(command, options);
+}
+
 void addPlanOptions(CLI::App* command, Options& options) {
-  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
+  addSceneOptions(command, options);
   addGraphOption(command, options, kPictureGraph);
   addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
@@ -73,7 +85,7 @@ void addPlanOptions(CLI::App* command, Options& options) {
 }
 
 void addReferenceOptions(CLI::App* command, Options& options, ReferenceOptions& reference) {
-  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
+  addSceneOptions(command, options);
   command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) every one")
       ->type_name("N|all");
   command->add_option("--spp", reference.spp, "most samples a pixel, or a point with --probe (default: 64)")->type_name("N");
@@ -100,6 +112,7 @@ void addReferenceOptions(CLI::App* command, Options& options, ReferenceOptions& 
 
 void addReportOptions(CLI::App* report, report::ReportOptions& reportOptions, Options& options) {
   report->add_option("SCENE", reportOptions.scenes, ".gltf or .glb files, or builtin:NAME[?key=value&...]")->type_name("")->take_all();
+  addSkyOption(report, options);
   report->add_option("--out", reportOptions.out, "folder to write; what it holds already is not measured again")->type_name("DIR");
   report->add_option("--time-limit", reportOptions.timeLimit, "seconds for all (default: none)")->type_name("S");
   report->add_option("--size", reportOptions.size, "pixels (default: 640x360)")->type_name("WxH");
@@ -119,7 +132,7 @@ void addReportOptions(CLI::App* report, report::ReportOptions& reportOptions, Op
 }
 
 void addVdbOptions(CLI::App* command, Options& options, VdbOptions& vdb) {
-  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...]")->type_name("");
+  addSceneOptions(command, options);
   addRepeated(command, "--out", options.outputs, "OpenVDB or NanoVDB file to write", "FILE.vdb|.nvdb");
   command->add_option("--grids", vdb.grids, "what to write, or `help` for the list; only what it needs is computed (default: default)")
       ->type_name("NAME[,NAME...]");
@@ -167,8 +180,7 @@ void addStabilityOptions(CLI::App* command, stability::SuiteOptions& suite, Opti
 }
 
 void addViewOptions(CLI::App* command, Options& options, viewer::ViewOptions& view) {
-  command->add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME[?key=value&...] (default: builtin:atrium)")
-      ->type_name("");
+  addSceneOptions(command, options, " (default: builtin:atrium)");
   addGraphOption(command, options, kFaceGraph);
   addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");

@@ -18,7 +18,7 @@ struct Everything {
     traits.materialCount = traits.textureCount = 2;
     traits.directionalLightCount = traits.pointLightCount = traits.spotLightCount = 1;
     traits.emissiveTriangleCount = 1;
-    traits.alphaMasked = traits.singleSided = traits.sky = true;
+    traits.alphaMasked = traits.singleSided = traits.sky = traits.skyImage = true;
     traits.boundsMax = glm::vec3(1.f);
     traits.surfaceArea = 1;
     traits.emissiveArea = 0.01;

@@ -10,6 +10,7 @@ namespace radivox::cli {
 
 struct Options {
   std::string scene;
+  std::string sky;  ///< takes the place of the scene's own; empty: that
   std::optional<std::string> graph;
   std::vector<std::string> presets;
   std::vector<std::string> sets;  ///< "node.param=value"

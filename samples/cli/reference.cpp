@@ -275,7 +275,7 @@ int runReference(const Options& options, const ReferenceOptions& from) {
   const std::string state = from.resume.empty() ? std::string() : readFile("--resume", from.resume);
   const std::string pointText = from.probe.empty() ? std::string() : readFile("--probe", from.probe);
 
-  const scene::Scene scene = scene::loadScene(options.scene);
+  const scene::Scene scene = scene::loadScene(options.scene, options.sky);
   scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   std::vector<reference::ProbePoint> points;
   if (!from.probe.empty()) points = readPoints(from.probe, pointText, scene.origin);

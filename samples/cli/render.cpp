@@ -118,7 +118,7 @@ int runRender(const Options& options) {
   prepareJob(options, wantsPng, job);
   stopIfInterrupted();
 
-  const scene::Scene scene = scene::loadScene(options.scene);
+  const scene::Scene scene = scene::loadScene(options.scene, options.sky);
   const scene::CameraDescription& camera = scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   record.camera = camera.name;
   printWarnings(scene.warnings);

@@ -120,7 +120,7 @@ int writeVdb(Options options, const VdbOptions& vdb) {
   if ((vdb::needsOf(grids) & vdb::NeedError) != 0) job.request.aovs.insert("error");
   stopIfInterrupted();
 
-  const scene::Scene scene = scene::loadScene(options.scene);
+  const scene::Scene scene = scene::loadScene(options.scene, options.sky);
   const scene::CameraDescription& camera = scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   for (const std::string& warning : scene.warnings) std::cerr << "radivox: warning: " << warning << "\n";
   stopIfInterrupted();

@@ -36,7 +36,7 @@ class Calibration {
       : options_(options),
         budget_(budget),
         size_(cli::parseSize(options.size)),
-        scene_(scene::loadScene(options.scene)),
+        scene_(scene::loadScene(options.scene, options.sky)),
         folder_(openFolder()),
         cache_(folder_) {
     gpu::DeviceOptions deviceOptions;

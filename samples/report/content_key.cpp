@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "engine/scene/sky.h"
+
 namespace radivox::report {
 
 namespace {
@@ -61,6 +63,11 @@ ContentKey& ContentKey::add(const scene::Scene& scene) {
                             light.direction.y, light.direction.z, light.intensity.x,    light.intensity.y,
                             light.intensity.z, light.range,       light.innerConeAngle, light.outerConeAngle};
     add(light.type).add(values, sizeof values);
+  }
+  if (scene.sky) {
+    const scene::Sky& sky = *scene.sky;
+    add(sky.width).add(&sky.turn, sizeof sky.turn).add(sky.suns.size());
+    addArray(sky.texels);
   }
   return add(&scene.skyRadiance, sizeof scene.skyRadiance);
 }

@@ -31,7 +31,7 @@ constexpr double kPathTracerSeconds = 30;  ///< no curve point takes longer, wit
 class SceneRun {
  public:
   SceneRun(Session& session, const std::string& source, const std::string& name, double shareOfTime)
-      : session_(session), scene_(scene::loadScene(source)), begin_(session.clock.elapsed()) {
+      : session_(session), scene_(scene::loadScene(source, session.common.sky)), begin_(session.clock.elapsed()) {
     for (const std::string& warning : scene_.warnings) std::cerr << "radivox: warning: " << warning << "\n";
     results_.name = name;
     results_.source = source;

@@ -45,6 +45,7 @@ Start startOf(const ViewOptions& view, const cli::Options& options) {
   Start start;
   Settings settings(options);
   start.view.scene = options.scene.empty() ? "builtin:atrium" : options.scene;
+  start.session.sky = options.sky;
   start.view.graph = settings.graph();
   start.view.settings = settings.values();
   start.view.bounces = settings.bounces();
@@ -97,7 +98,7 @@ int runHeadless(const ViewOptions& viewOptions, const cli::Options& options) {
   Start start = startOf(viewOptions, options);
   start.session.previews = false;
   Session session(start.session);
-  const scene::Scene scene = scene::loadScene(start.view.scene);
+  const scene::Scene scene = scene::loadScene(start.view.scene, options.sky);
   warn(scene.warnings);
   start.view.camera = scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   const CameraPath* path = viewOptions.play.empty() ? nullptr : &start.views.findPath(viewOptions.play, viewOptions.views);

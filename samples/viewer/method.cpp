@@ -47,7 +47,7 @@ void cheapen(params::Table& table, const std::string& owner, std::set<std::strin
 /// The same light sources: a plan made for one holds for the other.
 bool isSamePlan(const scene::Traits& a, const scene::Traits& b) {
   return a.directionalLightCount == b.directionalLightCount && a.pointLightCount == b.pointLightCount &&
-         a.spotLightCount == b.spotLightCount && a.sky == b.sky && a.emittersByRays == b.emittersByRays;
+         a.spotLightCount == b.spotLightCount && a.sky == b.sky && a.skyImage == b.skyImage && a.emittersByRays == b.emittersByRays;
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ void Session::reset() {
 void Session::loadScene(const View& view, const Hooks& hooks) {
   if (loaded_ && view.scene == sceneName_) return;
   if (hooks.progress) hooks.progress("loading " + view.scene, 0.0);
-  auto scene = std::make_shared<scene::Scene>(scene::loadScene(view.scene));
+  auto scene = std::make_shared<scene::Scene>(scene::loadScene(view.scene, options_.sky));
   preview_.reset();
   full_.reset();
   shown_ = {};

@@ -20,6 +20,7 @@ namespace radivox::viewer {
 struct SessionOptions {
   gpu::DeviceOptions device;
   std::vector<std::string> modules;  ///< libraries with more nodes
+  std::string sky;                   ///< takes the place of every scene's own; empty: that
   bool previews = true;              ///< false: only full pictures (headless, tests)
 };
 

@@ -48,6 +48,8 @@ RADIVOX_CONST uint kLightPoint = 1u;
 RADIVOX_CONST uint kLightSpot = 2u;
 RADIVOX_CONST uint kLightEmitterSample = 3u;  // one point on an emissive triangle; radiates into its front hemisphere with a cosine
 
+RADIVOX_CONST uint kSkySun = 0xfffffffeu;  // Light::triangle
+
 struct Light {
   vec3 position;       // m; point, spot, emitter sample
   uint type;
@@ -58,7 +60,7 @@ struct Light {
   float cosOuter;      // spot
   uint firstShadowView;
   uint shadowViewCount;  // directional 1; spot 1, or 5 when its outer half angle is above 60°; point 6; emitter sample 5
-  uint triangle;         // emitter sample: the emissive triangle it stands for; else kNoTexture
+  uint triangle;         // emitter sample: the emissive triangle it stands for; kSkySun: taken out of the sky's image; else kNoTexture
 };
 
 // One view of a light: a square tile of resolution² texels at (offsetX, offsetY) of a shadow map layer. viewProjection fills the tile
@@ -100,12 +102,15 @@ struct SceneInfo {
   uint triangleCount;
   vec3 boundsMax;
   uint lightCount;
-  vec3 skyRadiance;  // W/(m² sr), constant over the sphere
+  vec3 skyRadiance;  // W/(m² sr), constant over the sphere; adds to the image in scene.sky
   uint materialCount;
   uint emissiveTriangleCount;
   uint shadowViewCount;
   float emissiveArea;  // m²
   uint emitterSampleCount;  // lights of type kLightEmitterSample; 0 with emissive triangles: emitters light through rays
+  uint skyWidth;   // texels of the sky's image; 0: none
+  uint skyHeight;
+  float skyTurn;   // radians about +y (shaders/shared/sky.h)
 };
 
 RADIVOX_SHARED_END

@@ -45,11 +45,14 @@ struct Cluster {
 };
 
 // Visibility row entry, once read (visibility_row.h): id | (count − 1) << 24. id < C: cluster; C ≤ id < C + F: face id − C (near hit); kMissBase + b: miss in
-// direction bin b (6 bins: the dominant axis of the direction, as faces are numbered).
+// direction bin b of kSkyBinCount (shaders/shared/sky.h): each side of a cube has kSkyBinSide² under the image of a sky, else one (6 bins: the
+// dominant axis of the direction, as faces are numbered).
 RADIVOX_CONST uint kEntryIdMask = 0x00ffffffu;
-RADIVOX_CONST uint kMissBase = 0x00fffff0u;
+RADIVOX_CONST uint kMissBase = 0x00ffff00u;
+RADIVOX_CONST uint kSkyBinSide = 4u;
+RADIVOX_CONST uint kSkyBinCount = 6u * kSkyBinSide * kSkyBinSide;
 // Not a direction but black: the ray met the back of a one-sided surface (sides=gltf), which lets nothing pass and reflects nothing.
-RADIVOX_CONST uint kAbsorbed = kMissBase + 6u;
+RADIVOX_CONST uint kAbsorbed = kMissBase + kSkyBinCount;
 RADIVOX_CONST uint kMaxRays = 256u;
 
 // Row of face s: bits [rowStart[s], rowStart[s+1]) of the chunk s / kRowsPerChunk; a chunk's rowStart has kRowsPerChunk + 1 words. Chunk

@@ -39,6 +39,26 @@ class RenderCommand : public CommandTest {
   }
 };
 
+TEST_F(RenderCommand, TakesASkyInPlaceOfTheScenesOwn) {
+  const CommandResult clear =
+      runRadivox(render("builtin:staircase", {"--sky", "builtin:clear?turn=40", "--validate", "--out", path("a.exr")}));
+  EXPECT_EQ(clear.exitCode, 0);
+  EXPECT_NE(clear.err.find("became a directional light"), std::string::npos) << clear.err;
+  EXPECT_EQ(std::count(clear.err.begin(), clear.err.end(), '\n'), 1) << clear.err;
+  // A sky of our own, written and read again; no sun in it, and nothing to say.
+  image::Image sky{8, 4, 3, std::vector<float>(8 * 4 * 3, 0.5f)};
+  image::writeExr(path("sky.exr"), {{"color", sky}});
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:staircase", {"--sky", path("sky.exr"), "--out", path("b.exr")})));
+  EXPECT_EQ(image::readExr(path("b.exr")).front().image.at(0, 0, 0), 0.5f) << "behind the scene";
+  for (const char* command : {"render", "reference", "graph", "vdb"}) {
+    std::vector<std::string> arguments = {command, "builtin:box", "--sky", path("none.exr")};
+    if (std::string(command) != "graph")
+      arguments.insert(arguments.end(), {"--out", path(std::string(command) == "vdb" ? "c.vdb" : "c.exr")});
+    expectError(arguments, 2, {"none.exr"});
+  }
+  expectError(render("builtin:box", {"--sky", "builtin:clear?tilt=3", "--out", path("c.exr")}), 2, {"tilt=3", "scale=X"});
+}
+
 TEST_F(RenderCommand, WritesTheLayersAskedForAndTheyAddUp) {
   ASSERT_NO_FATAL_FAILURE(expectDone(
       render("builtin:cornell_point", {"--validate", "--out", path("a.exr"), "--out", path("a.png"), "--stats", path("a.json"), "--aov",

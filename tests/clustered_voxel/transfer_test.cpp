@@ -53,7 +53,7 @@ Case makeCase(uint32_t faceCount, uint32_t clusterCount, uint32_t entriesPerRow,
       const uint32_t kind = closed ? random() % 8 : random() % 10;
       const uint32_t id = kind < 6    ? random() % clusterCount
                           : kind < 8  ? clusterCount + random() % faceCount
-                          : kind == 8 ? shared::kMissBase + random() % 6
+                          : kind == 8 ? shared::kMissBase + random() % shared::kSkyBinCount
                                       : shared::kAbsorbed;
       const uint32_t count = std::min(rays, 1 + random() % (2 * 128 / entriesPerRow));
       row[id] += count;

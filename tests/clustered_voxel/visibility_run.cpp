@@ -24,6 +24,12 @@ std::string print(const Row& row) {
   return text;
 }
 
+scene::Traits traitsOf(const VisibilitySettings& settings) {
+  scene::Traits traits;
+  traits.sky = traits.skyImage = settings.skyImage;
+  return traits;
+}
+
 }  // namespace
 
 std::vector<uint32_t> runLabels(size_t faceCount, uint32_t size) {
@@ -34,7 +40,7 @@ std::vector<uint32_t> runLabels(size_t faceCount, uint32_t size) {
 
 VisibilityRun::VisibilityRun(gpu::Device& device, const VoxelStructures& s, const VisibilitySettings& settings,
                              std::vector<uint32_t> faceLabels, const std::string& skip)
-    : labels(std::move(faceLabels)), clusterCount(countOf(labels)), harness(device), faceCount_(s.faces.size()) {
+    : labels(std::move(faceLabels)), clusterCount(countOf(labels)), harness(device, traitsOf(settings)), faceCount_(s.faces.size()) {
   harness.add<clustered_voxel::Visibility>("visibility");
   harness.importValue("in.grid", s.grid);
   // A buffer of nothing cannot be bound: the empty scene imports one spare element.

@@ -46,6 +46,18 @@ TEST_F(VisibilityTest, EveryVariantEqualsItsDefinition) {
   checkRows(device(), oneSided, {.rays = 16, .voxelHit = true});
 }
 
+// Under the image of a sky misses keep more of where they went.
+TEST_F(VisibilityTest, FinerBinsOfDirectionsEqualTheirDefinition) {
+  const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 16);
+  checkRows(device(), s, {.rays = 64, .skyImage = true});
+  checkRows(device(), s, {.rays = 24, .bresenham = true, .axisFrame = true, .skyImage = true});
+  uint32_t bins = 0;
+  for (const Row& row : checkRows(device(), buildVoxelStructures(oracle::randomSoup(3, 24), 16, false), {.rays = 48, .skyImage = true})) {
+    for (const auto& [id, count] : row) bins |= id >= shared::kMissBase + 6 && id < shared::kAbsorbed ? 1u : 0u;
+  }
+  EXPECT_EQ(bins, 1u);
+}
+
 TEST_F(VisibilityTest, AnyNumberOfRays) {
   const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 12);
   for (const uint32_t rays : {1u, 2u, 3u, 31u, 33u, 100u, 255u, 256u}) checkRows(device(), s, {.rays = rays});

@@ -302,7 +302,7 @@ std::vector<std::map<uint32_t, uint32_t>> visibilityRows(const VoxelStructures& 
       const RayResult r = traceFaceRay(s, settings, directions, face, ray);
       uint32_t id = 0;
       if (r.face == kOracleMiss) {
-        id = shared::kMissBase + shared::directionBin(r.direction);
+        id = shared::kMissBase + shared::skyBin(r.direction, settings.skyImage);
       } else if (r.face == kOracleAbsorbed) {
         id = shared::kAbsorbed;
       } else {

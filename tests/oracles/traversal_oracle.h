@@ -18,6 +18,7 @@ struct VisibilitySettings {
   bool axisFrame = false;
   bool voxelHit = false;
   float near = 8.f;
+  bool skyImage = false;  ///< misses by finer bins
 };
 
 struct VoxelVisit {

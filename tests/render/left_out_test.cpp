@@ -85,6 +85,24 @@ TEST_F(LeftOut, Emitters) {
   EXPECT_GT(render(s, tiny(), bit(Feature::Emitters)).bytes, render(s, tiny(), 0).bytes);
 }
 
+TEST_F(LeftOut, Sky) {
+  const scene::Scene s = scene::makeBuiltin("cornell_point");
+  for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
+    PipelineOptions options = tiny();
+    options.graph = graph;
+    EXPECT_FALSE(has(render(s, options, 0), "sky"));
+    EXPECT_TRUE(has(render(s, options, bit(Feature::Sky)), "sky"));
+    expectSameBits(s, options, Feature::Sky);
+    // Nor where its light is not passed on.
+    scene::Scene lit = s;
+    lit.skyRadiance = glm::vec3(1.f);
+    EXPECT_TRUE(has(render(lit, options, 0), "sky"));
+    options.bounces = 0;
+    EXPECT_FALSE(has(render(lit, options, 0), "sky"));
+    expectSameBits(lit, options, Feature::Bounces);
+  }
+}
+
 /// The same scene, lit by one light of that kind alone.
 scene::Scene litBy(uint32_t type) {
   scene::Scene s = scene::makeBuiltin("cornell_point");

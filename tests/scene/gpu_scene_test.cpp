@@ -8,6 +8,7 @@
 #include "engine/scene/builtin.h"
 #include "engine/scene/gpu_scene.h"
 #include "engine/scene/texture.h"
+#include "shaders/shared/sky.h"
 #include "tests/gpu/expect_error.h"
 #include "tests/oracles/gpu_fixture.h"
 
@@ -118,6 +119,27 @@ TEST_F(GpuSceneTest, EverythingArrives) {
   EXPECT_EQ(info.boundsMax, s.traits().boundsMax);
 }
 
+TEST_F(GpuSceneTest, TheSkyIsAnImageAndItsSunALight) {
+  Scene s = scene::loadScene("builtin:plane", "builtin:clear");
+  const auto lamps = static_cast<uint32_t>(s.lights.size());
+  GpuScene gpuScene(device(), s);
+  EXPECT_EQ(gpuScene.counts().at("sky_texels"), shared::kSkyFirstTexel + 512u * 256u);
+  EXPECT_EQ(gpuScene.counts().at("lights"), lamps + 1u);
+  const auto info = read<shared::SceneInfo>(gpuScene, s, "scene.info", 1)[0];
+  EXPECT_EQ(info.skyWidth, 512u);
+  EXPECT_EQ(info.skyHeight, 256u);
+  const auto lights = read<shared::Light>(gpuScene, s, "scene.lights", lamps + 1);
+  EXPECT_EQ(lights[lamps].triangle, shared::kSkySun);
+  EXPECT_EQ(lights[lamps].type, shared::kLightDirectional);
+  // Another sky, without loading anything else anew.
+  s.sky = nullptr;
+  s.skyRadiance = glm::vec3(1.f);
+  gpuScene.setLights(s);
+  EXPECT_EQ(gpuScene.counts().at("sky_texels"), 0u);
+  EXPECT_EQ(gpuScene.counts().at("lights"), lamps);
+  EXPECT_EQ(read<shared::SceneInfo>(gpuScene, s, "scene.info", 1)[0].skyWidth, 0u);
+}
+
 TEST_F(GpuSceneTest, CountsNameWhatThereIs) {
   const Scene s = scene::loadScene("builtin:cornell_point");
   GpuScene gpuScene(device(), s);
@@ -133,6 +155,7 @@ TEST_F(GpuSceneTest, CountsNameWhatThereIs) {
                                   {"shadow_layers", 2},
                                   {"emitter_samples", 0},
                                   {"emissive_triangles", 0},
+                                  {"sky_texels", 0},
                                   {"width", 640},
                                   {"height", 360}};
   EXPECT_EQ(counts, expected);
@@ -287,7 +310,7 @@ TEST(SharedLayoutTest, SizesAreSumsOfMembers) {
   EXPECT_EQ(sizeof(shared::ShadowView), 164u);
   EXPECT_EQ(sizeof(shared::EmissiveTriangle), 24u);
   EXPECT_EQ(sizeof(shared::Camera), 168u);
-  EXPECT_EQ(sizeof(shared::SceneInfo), 64u);
+  EXPECT_EQ(sizeof(shared::SceneInfo), 76u);
 }
 
 }  // namespace

@@ -44,6 +44,22 @@ TEST_F(ImportErrorTest, TheUnbentFileLoads) {
   EXPECT_EQ(scene::importGltf(folder_.write("scene.gltf", makeFile().gltf())).triangleCount(), 1u);
 }
 
+TEST_F(ImportErrorTest, SkiesThatAreNone) {
+  const auto expectSkyFailure = [this](const json& sky, const std::string& part) {
+    expectFailureOf([&sky](json& root) { root["scenes"][0]["extras"]["radivox"]["sky"] = sky; }, "scenes[0].extras.radivox.sky");
+    expectFailureOf([&sky](json& root) { root["scenes"][0]["extras"]["radivox"]["sky"] = sky; }, part);
+  };
+  for (const json& sky :
+       {json("builtin:clear"), json{{"scale", 2}}, json{{"uri", 3}}, json{{"uri", ""}}, json{{"uri", "a.exr"}, {"turn", "much"}}})
+    expectSkyFailure(sky, "should be {");
+  expectSkyFailure({{"uri", "/etc/a.exr"}}, "not a file beside");
+  expectSkyFailure({{"uri", "http://host/a.exr"}}, "not a file beside");
+  expectSkyFailure({{"uri", "none.exr"}}, "no such file");
+  expectSkyFailure({{"uri", "a.png"}}, ".exr or .hdr");
+  expectSkyFailure({{"uri", "builtin:clear"}, {"scale", -1}}, "scale=-1");
+  expectSkyFailure({{"uri", "builtin:clear"}, {"sun", "out"}}, "sun=out");
+}
+
 TEST_F(ImportErrorTest, FilesThatAreNone) {
   expectError(catchError([&] { scene::importGltf(folder_.path("missing.glb")); }), ErrorCode::BadInput, "no such file");
   expectError(catchError([&] { scene::importGltf(folder_.path("")); }), ErrorCode::BadInput, "is a directory");

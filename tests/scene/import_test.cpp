@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "engine/scene/gltf.h"
+#include "engine/scene/sky.h"
 #include "tests/scene/tiny_gltf.h"
 
 namespace radivox::tests {
@@ -363,6 +364,23 @@ TEST_F(ImportTest, EmptyAndUnlitScenes) {
   EXPECT_EQ(sky.skyRadiance, glm::vec3(0.1f, 0.2f, 0.3f));
   EXPECT_TRUE(sky.traits().sky);
   EXPECT_FALSE(hasWarning(sky, "no light"));
+}
+
+TEST_F(ImportTest, TheImageOfASkyLiesBesideTheFile) {
+  TinyGltf file;
+  file.addTriangle();
+  file.json["scenes"][0]["extras"]["radivox"]["sky"] = {{"uri", "builtin:clear"}, {"turn", 90}, {"scale", 2}, {"sun", "keep"}};
+  const Scene clear = load(file);
+  ASSERT_NE(clear.sky, nullptr);
+  EXPECT_TRUE(clear.traits().skyImage);
+  EXPECT_EQ(clear.traits().directionalLightCount, 0u) << "the sun was kept";
+  EXPECT_NEAR(clear.sky->turn, 1.5708, 1e-4);
+  EXPECT_FALSE(hasWarning(clear, "no light"));
+  file.json["scenes"][0]["extras"]["radivox"]["sky"] = {{"uri", "builtin:clear"}};
+  const Scene sunny = load(file);
+  EXPECT_EQ(sunny.traits().directionalLightCount, 1u);
+  EXPECT_TRUE(hasWarning(sunny, "became a directional light")) << allWarnings(sunny);
+  EXPECT_EQ(clear.sky->texels[0], 2.f * sunny.sky->texels[0]);
 }
 
 TEST_F(ImportTest, WhatIsLeftOutIsSaid) {

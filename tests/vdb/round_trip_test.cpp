@@ -61,7 +61,7 @@ struct Truth {
       shared::forEachRowEntry(words.data(), starts[slot], starts[slot + 1], static_cast<uint32_t>(c + f), [&](uint32_t id, uint32_t hits) {
         rays += hits;
         if (id >= shared::kMissBase) {
-          missed += id < shared::kMissBase + 6 ? hits : 0;
+          missed += id < shared::kAbsorbed ? hits : 0;
         } else {
           distinct.insert(id < c ? id : labels.at(id - c));
         }

@@ -22,9 +22,9 @@ constexpr uint32_t kGroup = 64;
 constexpr uint32_t kRowsPerGroup = 8;
 constexpr VkDeviceSize kStatusBytes = 16;
 
-/// One where none is asked for but they are kept: the picture leaves it out.
+/// One where none is asked for but they are kept, or the sky's share of the same rays is asked for: the picture leaves it out.
 uint32_t bouncesOf(const scene::Request& request, const scene::Traits& traits) {
-  return request.bounces == 0 && traits.keeps(scene::Feature::Bounces) ? 1 : request.bounces;
+  return request.bounces == 0 && (traits.sky || traits.keeps(scene::Feature::Bounces)) ? 1 : request.bounces;
 }
 
 gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount,
@@ -84,7 +84,7 @@ void Bounce::declare(graph::Declaration& d) {
   weights.unwanted = emission.unwanted;
   weights.unwantedReason = emission.unwantedReason;
   d.read("face_irradiance", "E_dir of each face, W/m²");
-  d.read("direct_radiosity", "reflected direct light of each cluster, W/m²");
+  d.read("direct_radiosity", "reflected direct light of each cluster, W/m²", graph::UseCompute | graph::UseTransfer);
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");
   d.write("face_radiosity", Shape::buffer(12, Extent::of("faces")), "reflected radiosity, W/m²");
   d.readBack("status", Shape::buffer(4, 4),

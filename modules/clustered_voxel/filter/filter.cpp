@@ -1,5 +1,6 @@
 #include "modules/clustered_voxel/filter/filter.h"
 
+#include "modules/clustered_voxel/sky/sky.h"
 #include "modules/clustered_voxel/structure.h"
 
 namespace radivox::clustered_voxel {
@@ -23,6 +24,14 @@ void Filter::declare(graph::Declaration& d) {
   d.read("needed", "bit per face: shown, or within the filter's reach");
   declareStructure(d);
   d.read("gathered", "E_indirect of each face, W/m²; a: sky visibility");
+  graph::Port& sky = d.read("gathered_sky", "E_sky of each face, W/m²");
+  sky.optional = true;
+  sky.unwanted = !d.traits.skyImage;
+  sky.unwantedReason = "the sky has no image";
+  readSkyImage(d);  // only its version: the sky changed
+  graph::Port& filteredSky = d.write("sky", Shape::buffer(16, Extent::of("faces")), "E_sky, W/m², filtered, of a sky with an image");
+  filteredSky.persistent = true;
+  filteredSky.optional = true;
   d.read("cluster_radiosity", "only its version: the light changed");
   d.read("row_start", "only its version: the rays changed");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m², filtered; a: sky visibility").persistent = true;
@@ -36,6 +45,7 @@ void Filter::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
   gpu::Device& device = context.device();
   faces_.prepare(device);
+  hasSky_ = context.has("sky") && context.has("gathered_sky") && context.has("scene.sky");
   filter_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/filter/filter.comp",
                                                            .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                            .pushConstantBytes = 12,
@@ -44,16 +54,25 @@ void Filter::prepare(graph::PrepareContext& context) {
 
 void Filter::record(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
+  const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("row_start") ||
+                     context.changed("faces") || (hasSky_ && context.changed("scene.sky"));
+  if (!faces_.record(context, context.buffer("shown"), false, stale)) return;
+  recordPasses(context, context.buffer("gathered"), context.buffer("irradiance"));
+  if (!hasSky_) return;
+  commands.barrier();
+  recordPasses(context, context.buffer("gathered_sky"), context.buffer("sky"));
+}
+
+void Filter::recordPasses(graph::RecordContext& context, const gpu::Buffer& gathered, const gpu::Buffer& filtered) {
+  gpu::Commands& commands = context.commands();
   const auto faceCount = static_cast<uint32_t>(context.count("faces"));
   const gpu::Buffer& status = context.buffer("status");
-  const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("row_start") || context.changed("faces");
-  if (!faces_.record(context, context.buffer("shown"), false, stale)) return;
   // The last pass runs over the list alone; those before it over every needed face (mark's reach covers them all).
   const uint32_t passes = radius_ == 0 ? 1 : passes_;
   for (uint32_t pass = 0; pass < passes; ++pass) {
     const bool last = pass + 1 == passes;
-    const gpu::Buffer& from = pass == 0 ? context.buffer("gathered") : context.buffer(pass % 2 == 1 ? "pass_a" : "pass_b");
-    const gpu::Buffer& to = last ? context.buffer("irradiance") : context.buffer(pass % 2 == 0 ? "pass_a" : "pass_b");
+    const gpu::Buffer& from = pass == 0 ? gathered : context.buffer(pass % 2 == 1 ? "pass_a" : "pass_b");
+    const gpu::Buffer& to = last ? filtered : context.buffer(pass % 2 == 0 ? "pass_a" : "pass_b");
     bindStructure(context, filter_, {context.buffer("voxels"), context.buffer("needed"), context.buffer("list"), status, from, to});
     struct {
       uint32_t faceCount, radius, fromList;

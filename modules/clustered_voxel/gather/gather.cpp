@@ -1,5 +1,6 @@
 #include "modules/clustered_voxel/gather/gather.h"
 
+#include "modules/clustered_voxel/sky/sky.h"
 #include "shaders/shared/voxel.h"
 
 namespace radivox::clustered_voxel {
@@ -30,6 +31,14 @@ void Gather::declare(graph::Declaration& d) {
   d.read("cluster_radiosity", "reflected radiosity, W/m²");
   d.read("face_radiosity", "reflected radiosity, W/m²");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m²; a: sky visibility").persistent = true;
+  readSkyImage(d);
+  graph::Port& info = d.read("scene.info", "sky radiance");
+  info.optional = true;
+  info.unwanted = !d.traits.skyImage;
+  info.unwantedReason = "the sky has no image";
+  graph::Port& sky = d.write("sky", Shape::buffer(16, Extent::of("faces")), "E_sky, W/m², of a sky with an image");
+  sky.persistent = true;
+  sky.optional = true;
   graph::Port& error = d.write("error", Shape::buffer(12, Extent::of("faces")), "standard error of E_indirect, W/m²");
   error.persistent = true;
   error.optional = true;
@@ -39,12 +48,14 @@ void Gather::declare(graph::Declaration& d) {
 void Gather::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
   gpu::Device& device = context.device();
+  hasSky_ = context.has("sky") && context.has("scene.sky");
   faces_.prepare(device);
   gather_ = gpu::Pipeline(
-      device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/gather.comp",
-                                       .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                       .pushConstantBytes = 8,
-                                       .constants = {{0, static_cast<uint32_t>(estimator_)}, {1, context.has("error") ? 1u : 0u}}});
+      device, gpu::ComputePipelineInfo{
+                  .shader = "clustered_voxel/gather/gather.comp",
+                  .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                  .pushConstantBytes = 8,
+                  .constants = {{0, static_cast<uint32_t>(estimator_)}, {1, context.has("error") ? 1u : 0u}, {2, hasSky_ ? 1u : 0u}}});
 }
 
 void Gather::record(graph::RecordContext& context) {
@@ -54,12 +65,14 @@ void Gather::record(graph::RecordContext& context) {
   // Only a new view leaves earlier results standing.
   const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("face_radiosity") ||
                      context.changed("entries") || context.changed("row_start") || context.changed("chunk_table") ||
-                     context.changed("faces") || context.changed("clusters") || context.changed("voxels");
+                     context.changed("faces") || context.changed("clusters") || context.changed("voxels") ||
+                     (hasSky_ && (context.changed("scene.sky") || context.changed("scene.info")));
   if (!faces_.record(context, context.buffer("needed"), !lazy_, stale)) return;
-  commands.bind(gather_,
-                {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("clusters"),
-                 context.buffer("cluster_radiosity"), context.buffer("face_radiosity"), context.buffer("faces"), context.buffer("voxels"),
-                 context.buffer("irradiance"), context.buffer(context.has("error") ? "error" : "irradiance")});
+  commands.bind(gather_, {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"),
+                          context.buffer("clusters"), context.buffer("cluster_radiosity"), context.buffer("face_radiosity"),
+                          context.buffer("faces"), context.buffer("voxels"), context.buffer("irradiance"),
+                          context.buffer(context.has("error") ? "error" : "irradiance"), context.buffer(hasSky_ ? "scene.sky" : "faces"),
+                          context.buffer(hasSky_ ? "scene.info" : "faces"), context.buffer(hasSky_ ? "sky" : "irradiance")});
   struct {
     uint32_t clusterCount, faceCount;
   } push{static_cast<uint32_t>(context.count("clusters")), faceCount};

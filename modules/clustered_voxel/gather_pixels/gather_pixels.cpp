@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "modules/clustered_voxel/sky/sky.h"
 #include "modules/clustered_voxel/structure.h"
 #include "shaders/shared/triangle_corners.h"
 
@@ -81,7 +82,18 @@ void GatherPixels::declare(graph::Declaration& d) {
   readNear("scene.triangle_materials", "one a triangle", masked || shadow, "no near triangle has an alpha mask");
   readNear("scene.materials", "Material", masked || shadow, "no near triangle has an alpha mask");
   readNear("scene.textures", "Texture", masked, "no near triangle has an alpha mask");
+  if (graph::Port& sky = readSky(d); !shadow) {
+    sky.unwanted = true;
+    sky.unwantedReason = kNoShadow;
+  }
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
+  readSkyImage(d);
+  readNear("scene.info", "sky radiance", d.traits.skyImage, "the sky has no image");
+  d.write("sky", image, "E_sky, W/m², of a sky with an image; 0 on the sky").optional = true;
+  if (d.traits.skyImage) {
+    d.scratch("raw_sky", image, "E_sky from each pixel's own rays");
+    if (smooth_ > 0) d.scratch("between_sky", image, "E_sky between filter passes");
+  }
   d.scratch("raw", image, "E_indirect from each pixel's own rays");
   if (smooth_ > 0) d.scratch("between", image, "E_indirect between filter passes");
 }
@@ -96,18 +108,21 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   hasTriangles_ = context.has("triangle_ids");
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
   hasShadow_ = context.has("shadow_depth");
-  std::vector<BindingType> bindings(29, kB);
+  hasSky_ = context.has("sky") && context.has("scene.sky");
+  std::vector<BindingType> bindings(32, kB);
   for (const size_t map : {25, 26, 28}) bindings[map] = BindingType::SampledImage;
-  for (const size_t image : {6, 7, 11, 15}) bindings[image] = kI;
+  for (const size_t image : {6, 7, 11, 15, 31}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
                                                           .bindings = bindings,
-                                                          .pushConstantBytes = 24,
+                                                          .pushConstantBytes = 32,
                                                           .constants = {{0, skip},
                                                                         {1, hasTriangles_ ? 1u : 0u},
                                                                         {2, isMasked_ ? 1u : 0u},
                                                                         {3, hasShadow_ ? 1u : 0u},
-                                                                        {4, context.has("corners") ? 1u : 0u}}});
+                                                                        {4, context.has("corners") ? 1u : 0u},
+                                                                        {5, context.has("sky_irradiance") ? 1u : 0u},
+                                                                        {6, hasSky_ ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -125,12 +140,14 @@ void GatherPixels::record(graph::RecordContext& context) {
     uint32_t width, height, rays, voxelCount;
     float near;
     uint32_t lightCount;
+    VkDeviceAddress sky;
   } push{raw.info().width,
          raw.info().height,
          rays_,
          static_cast<uint32_t>(context.count("voxels")),
          near_,
-         hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u};
+         hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u,
+         hasSky_ ? context.buffer("scene.sky").address() : 0};
   // No planes where there are no voxels.
   const std::vector<const gpu::Buffer*> planes = context.grown("planes");
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
@@ -165,24 +182,35 @@ void GatherPixels::record(graph::RecordContext& context) {
                  map("shadow_depth"),
                  map("shadow_triangle"),
                  optional("face_irradiance", hasShadow_),
-                 context.has("corners") ? context.image("corners") : absent_});
+                 context.has("corners") ? context.image("corners") : absent_,
+                 optional("sky_irradiance", context.has("sky_irradiance")),
+                 optional("scene.info", hasSky_),
+                 hasSky_ ? context.image("raw_sky") : absent_});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);
   commands.dispatchItems(blocks * kBlock * kBlock, 64);
 
-  const gpu::Image& out = context.image("irradiance");
-  const gpu::Image* from = &raw;
+  filter(context, "raw", "between", "irradiance");
+  if (hasSky_) filter(context, "raw_sky", "between_sky", "sky");
+}
+
+void GatherPixels::filter(graph::RecordContext& context, const char* raw, const char* between, const char* outName) {
+  gpu::Commands& commands = context.commands();
+  const gpu::Image& position = context.image("position");
+  const gpu::Image& normal = context.image("normal");
+  const gpu::Image& out = context.image(outName);
+  const gpu::Image* from = &context.image(raw);
   for (uint32_t pass = 0; pass <= smooth_; ++pass) {
     commands.barrier();
     // Ends in `irradiance` whatever the number of passes.
-    const gpu::Image& to = (smooth_ - pass) % 2 == 0 ? out : context.image("between");
+    const gpu::Image& to = (smooth_ - pass) % 2 == 0 ? out : context.image(between);
     commands.bind(filter_, {context.buffer("grid"), position, normal, *from, to});
     struct {
       uint32_t width, height, pass, step;
-    } filterPush{push.width, push.height, pass, pass == 0 ? 1u : kBlock << (pass - 1)};
+    } filterPush{out.info().width, out.info().height, pass, pass == 0 ? 1u : kBlock << (pass - 1)};
     commands.push(filterPush);
-    commands.dispatchItems(uint64_t{push.width} * push.height, 64);
+    commands.dispatchItems(uint64_t{filterPush.width} * filterPush.height, 64);
     from = &to;
   }
 }

@@ -1,6 +1,8 @@
 #include "modules/clustered_voxel/inject/inject.h"
 
-#include <bit>
+#include <array>
+
+#include "modules/clustered_voxel/sky/sky.h"
 
 namespace radivox::clustered_voxel {
 
@@ -34,6 +36,7 @@ void Inject::declare(graph::Declaration& d) {
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;
+  readSky(d);
   d.write("face_irradiance", Shape::buffer(12, Extent::of("faces")), "E_dir of each face, W/m²; 0: unlit");
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected direct light, W/m²");
   d.readBack("status", Shape::buffer(4, 4), "texels without a face; lit texels, low and high word; 0");
@@ -47,11 +50,15 @@ void Inject::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   constexpr auto kB = BindingType::StorageBuffer;
   constexpr auto kI = BindingType::SampledImage;
-  if (!lit_ || !context.has("shadow_triangle")) {
-    lit_ = false;
-    return;
+  if (!context.has("shadow_triangle")) lit_ = false;
+  hasSky_ = context.has("sky_irradiance");
+  if (hasSky_) {
+    addSky_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/add_sky.comp",
+                                                             .bindings = {kB, kB},
+                                                             .pushConstantBytes = 4,
+                                                             .constants = {{0, lit_ ? 1u : 0u}}});
   }
-  if (method_ == Method::Splat) {
+  if (lit_ && method_ == Method::Splat) {
     splat_ =
         gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
                                                        .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
@@ -60,7 +67,7 @@ void Inject::prepare(graph::PrepareContext& context) {
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
-  } else {
+  } else if (lit_) {
     points_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/points.comp",
                                                              .bindings = {kB, kB, kB, kI, kB, kB, kB, kB, kB, kB},
                                                              .pushConstantBytes = 8});
@@ -79,7 +86,7 @@ void Inject::record(graph::RecordContext& context) {
   const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
   const gpu::Buffer& status = context.buffer("status");
   commands.fill(status, 0);
-  if (!lit_ || faceCount == 0) {
+  if ((!lit_ && !hasSky_) || faceCount == 0) {
     commands.fill(irradiance, 0);
     commands.fill(radiosity, 0);
     return;
@@ -88,7 +95,7 @@ void Inject::record(graph::RecordContext& context) {
     uint32_t viewCount, lightCount, faceCount;  // faceCount 0: make the table instead
   } push{static_cast<uint32_t>(context.count("shadow_views")), static_cast<uint32_t>(context.count("lights")), faceCount};
 
-  if (method_ == Method::Splat) {
+  if (lit_ && method_ == Method::Splat) {
     const gpu::Buffer& fluxHigh = context.buffer("flux_high");
     const gpu::Buffer& viewTable = context.buffer("table");
     // At most: tiles need not fill their layers; the shader stops at the last view.
@@ -115,7 +122,7 @@ void Inject::record(graph::RecordContext& context) {
                              context.buffer("scene.lights"), context.buffer("voxels")});
     commands.push(std::array{faceCount, push.lightCount});
     commands.dispatchItems(faceCount, kGroup);
-  } else {
+  } else if (lit_) {
     commands.bind(points_, {context.buffer("scene.lights"), context.buffer("scene.shadow_views"), context.buffer("grid"),
                             context.image("shadow_depth"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("voxels"),
                             context.buffer("faces"), irradiance, status});
@@ -126,6 +133,12 @@ void Inject::record(graph::RecordContext& context) {
     commands.dispatchItems(faceCount, kGroup);
   }
   commands.barrier();
+  if (hasSky_) {
+    commands.bind(addSky_, {context.buffer("sky_irradiance"), irradiance});
+    commands.push(faceCount);
+    commands.dispatchItems(faceCount, kGroup);
+    commands.barrier();
+  }
   commands.bind(clusters_, {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), irradiance, radiosity,
                             context.buffer(context.has("weights") ? "weights" : "members")});
   commands.push(clusterCount);

@@ -1,9 +1,9 @@
 // clustered_voxel.inject — direct light arrives at voxel faces.
 //
 // reads   scene.lights, scene.shadow_views, scene.info, scene.vertices, scene.indices; shadow.depth, shadow.triangle (absent when no light
-//         casts from a point: then everything is 0); grid, occupancy, rank, mask, first, faces; labels, clusters, members;
-//         weights? of visibility (absent: areas)
-// writes  face_irradiance   vec3 × F   E_dir, W/m²; 0: unlit
+//         casts from a point: then only the sky lights faces); grid, occupancy, rank, mask, first, faces; labels, clusters, members;
+//         weights? of visibility (absent: areas); sky_irradiance? = sky.irradiance (where the scene has a sky)
+// writes  face_irradiance   vec3 × F   E_dir, W/m², with the sky's light; 0: unlit
 //         cluster_radiosity vec3 × C   Σ w ρ E_dir / Σ w, W/m²: the light that clusters send back at once
 //         status            u32 × 4    texels that found no face (their flux is lost), low and high word of all lit texels, 0
 // runs    when lights, shadow maps, faces or clusters change
@@ -37,8 +37,8 @@ class Inject : public graph::Node {
  private:
   Method method_ = Method::Splat;
   params::Table table_;
-  bool lit_ = false;
-  gpu::Pipeline splat_, points_, resolve_, clusters_;
+  bool lit_ = false, hasSky_ = false;
+  gpu::Pipeline splat_, points_, resolve_, addSky_, clusters_;
 };
 
 }  // namespace radivox::clustered_voxel

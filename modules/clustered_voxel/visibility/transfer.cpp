@@ -30,7 +30,8 @@ void Transfer::declare(graph::Declaration& d) {
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;
   d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
-  d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend").growable = true;
+  d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend")
+      .growable = true;
   d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene");
   d.publishCount("transfer_entries", "", 0);
   d.scratch("total", Shape::buffer(4, 2), "number of entries, low and high word");

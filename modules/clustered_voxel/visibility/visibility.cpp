@@ -124,8 +124,9 @@ void Visibility::prepare(graph::PrepareContext& context) {
   merge_ = make("clustered_voxel/visibility/merge.comp", 7, 24, {{0, weights_ == Weights::Seen ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 16, {});
   const auto frame = static_cast<uint32_t>(frame_);
+  const uint32_t skyImage = context.traits().skyImage ? 1 : 0;
   if (traversal_ == Traversal::Bresenham) {
-    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}});
+    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}, {7, skyImage}});
   } else {
     const auto hit = static_cast<uint32_t>(hit_);
     const uint32_t near = context.has("triangle_ids") ? 1 : 0;
@@ -138,10 +139,10 @@ void Visibility::prepare(graph::PrepareContext& context) {
     }
     // Where the clearance of a large grid does not fit one binding, bricks do.
     trace_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}});
+                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}});
     if (skip_ == Skip::Clearance)
       traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                          {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}});
+                          {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}});
   }
   std::vector<uint32_t> directions = makeDirections(rays_);
   directions.resize(shared::kShiftCount * shared::kMaxRays);
@@ -337,9 +338,12 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   commands.barrier();
   struct {
     uint32_t rowCount, rayCount, tableBits, clusterCount, firstFace, faceCount;
-  } mergePush{rows,      rays_,
-              tableBits(rays_), static_cast<uint32_t>(context.count("clusters")),
-              firstFace, static_cast<uint32_t>(context.count("faces"))};
+  } mergePush{rows,
+              rays_,
+              tableBits(rays_),
+              static_cast<uint32_t>(context.count("clusters")),
+              firstFace,
+              static_cast<uint32_t>(context.count("faces"))};
   commands.bind(merge_, {hits, context.buffer("labels"), table, offsets, context.buffer("faces"), context.buffer("weights"),
                          context.buffer("entry_count")});
   commands.push(mergePush);

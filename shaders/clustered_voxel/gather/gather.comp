@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 // One lane a listed face: E_s = Σ over its visibility row. See modules/clustered_voxel/gather/gather.h.
 #include "shared/dispatch.glsl"
+#include "shared/scene.h"
 #include "shared/voxel_codec.h"
 #include "shared/visibility_rows.glsl"
 
@@ -21,6 +22,10 @@ layout(set = 0, binding = 7, scalar) readonly buffer FacesBuffer { Face faces[];
 layout(set = 0, binding = 8, scalar) readonly buffer VoxelBuffer { uint voxels[]; };
 layout(set = 0, binding = 9, scalar) buffer IrradianceBuffer { vec4 irradiance[]; };
 layout(set = 0, binding = 10, scalar) writeonly buffer ErrorBuffer { vec3 standardError[]; };
+layout(constant_id = 2) const bool kSky = false;  // the sky has an image
+layout(set = 0, binding = 11, scalar) readonly buffer SkyBuffer { vec3 sky[]; };  // kSkyBinCount means
+layout(set = 0, binding = 12, scalar) readonly buffer Info { SceneInfo info; };
+layout(set = 0, binding = 13, scalar) buffer SkyIrradianceBuffer { vec4 skyIrradiance[]; };
 layout(push_constant, scalar) uniform Push {
   uint clusterCount;
   uint faceCount;
@@ -41,6 +46,7 @@ void main() {
   VisibilityRow row = openRow(chunkTable[s / kRowsPerChunk], rowStart[rowSlot(s)], rowStart[rowSlot(s) + 1]);
   vec3 sum = vec3(0.0);
   vec3 squares = vec3(0.0);
+  vec3 skySum = vec3(0.0);
   uint rays = 0, misses = 0;
   // differential: the receiver is the voxel face's centre and axis
   uint f = faces[s].key & 7u;
@@ -53,7 +59,10 @@ void main() {
     uint count = (word >> 24) + 1;
     rays += count;
     if (id >= kMissBase) {
-      if (id < kMissBase + kFaceCount) misses += count;
+      if (id < kAbsorbed) {
+        misses += count;
+        if (kSky) skySum += float(count) * sky[id - kMissBase];
+      }
       continue;
     }
     float weight = float(count);
@@ -75,6 +84,7 @@ void main() {
   }
   float share = rays > 0u ? 1.0 / float(rays) : 0.0;
   irradiance[s] = vec4(kEstimator == 1 ? sum : sum * share, float(misses) * share);
+  if (kSky) skyIrradiance[s] = vec4(3.14159265358979 * share * (skySum + float(misses) * info.skyRadiance), 0.0);
   if (kError) {
     // Of the mean of M independent rays: √((mean of squares − square of the mean) / (M − 1)).
     vec3 mean = sum * share;

@@ -41,6 +41,13 @@ layout(set = 0, binding = 26) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 27, scalar) readonly buffer FaceIrradiance { vec3 faceIrradiance[]; };
 layout(constant_id = 4) const bool kCorners = false;  // triangleCorners is there
 layout(set = 0, binding = 28) uniform sampler2D triangleCorners;
+layout(constant_id = 5) const bool kSky = false;  // faceIrradiance holds the sky's light, which no shadow map tells
+layout(set = 0, binding = 29, scalar) readonly buffer SkyIrradiance { vec3 skyIrradiance[]; };
+layout(constant_id = 6) const bool kSkyImage = false;
+// By address: there are 32 bindings at most.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SkyValues { vec3 values[]; };
+layout(set = 0, binding = 30, scalar) readonly buffer Info { SceneInfo info; };
+layout(set = 0, binding = 31, rgba32f) writeonly uniform image2D rawSkyImage;
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
@@ -48,11 +55,13 @@ layout(push_constant, scalar) uniform Push {
   uint voxelCount;
   float nearDistance;  // voxels
   uint lightCount;
+  uvec2 sky;           // address of scene.sky
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_walk.glsl"
 #include "shared/light.glsl"
 #include "shared/shadow_lookup.glsl"
+#include "shared/sky.h"
 
 // Direct irradiance at a point of a triangle, as one texel of each shadow map has it. n: unit, on the side that is looked at.
 vec3 directIrradiance(vec3 p, vec3 n, uint triangle) {
@@ -113,6 +122,7 @@ void main() {
   vec2 shift = vec2(uvec2(hashed, hashBits(hashed)) >> 8) * (1.0 / 16777216.0);
 
   vec4 sum = vec4(0.0);
+  vec3 skySum = vec3(0.0);
   for (uint ray = 0u; subgroupAny(ray < end); ++ray) {
     bool busy = ray < end;
     vec2 square = fract(directions[place * rays + min(ray, rays - 1u)] + shift);
@@ -128,11 +138,15 @@ void main() {
       if (exact) {
         vec3 at = position.xyz + (kNearLift * n + hit.time * way.direction) * grid.h;
         vec3 change = directIrradiance(at, hit.normal, hit.triangle) - faceIrradiance[face];
+        if (kSky) change += skyIrradiance[face];
         radiosity = max(radiosity + decodeAlbedo(faces[face].albedo) * change, vec3(0.0));
       }
     }
     sum.xyz += isFace ? radiosity : vec3(0.0);
-    sum.w += busy && hit.face == kHitNothing ? 1.0 : 0.0;
+    bool missed = busy && hit.face == kHitNothing;
+    sum.w += missed ? 1.0 : 0.0;
+    if (kSkyImage && missed) skySum += info.skyRadiance + SkyValues(sky).values[skyCell(way.direction, info.skyTurn)];
   }
+  if (kSkyImage && isPixel) imageStore(rawSkyImage, ivec2(pixel), vec4(end > 0u ? 3.14159265358979 / float(rays) * skySum : vec3(0.0), 0.0));
   if (isPixel) imageStore(rawImage, ivec2(pixel), end > 0u ? sum / float(rays) : vec4(0.0));
 }

@@ -9,10 +9,11 @@ layout(local_size_x = 64) in;
 #include "clustered_voxel/visibility/visibility.h"
 #include "clustered_voxel/visibility/trace.glsl"
 layout(set = 0, binding = 11, scalar) writeonly buffer Hits { uint hits[]; };  // M a row
+layout(constant_id = 7) const bool kSkyImage = false;  // misses are kept by finer bins
 
 uint hitWord(uint face, float time, vec3 direction) {
-  if (face == kHitNothing) return kMissHit + directionBin(direction);
-  if (face == kHitBack) return kMissHit + 6u;
+  if (face == kHitNothing) return kMissHit + skyBin(direction, kSkyImage);
+  if (face == kHitBack) return kMissHit + kSkyBinCount;
   return face | (time <= nearDistance ? kNearHit : 0u) | (time <= kCloseDistance ? kCloseHit : 0u);
 }
 

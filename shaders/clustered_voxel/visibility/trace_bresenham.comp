@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 #include "clustered_voxel/visibility/visibility.h"
 layout(constant_id = 2) const uint kFrame = 1;
+layout(constant_id = 7) const bool kSkyImage = false;  // misses are kept by finer bins
 
 #define RADIVOX_BIND_GRID 0
 #define RADIVOX_BIND_OCCUPANCY 1
@@ -78,8 +79,8 @@ void main() {
     }
     precise float distance = float(i) * pace;
     uint result = hit | (distance <= nearDistance ? kNearHit : 0u) | (distance <= kCloseDistance ? kCloseHit : 0u);
-    if (hit == kHitBack) result = kMissHit + 6u;
-    if (hit == kHitNothing) result = kMissHit + directionBin(way.direction);
+    if (hit == kHitBack) result = kMissHit + kSkyBinCount;
+    if (hit == kHitNothing) result = kMissHit + skyBin(way.direction, kSkyImage);
     hits[row * rayCount + ray] = result;
   }
 }

@@ -1,6 +1,7 @@
 // What the shaders of clustered_voxel.visibility and their host side agree on.
 #ifndef RADIVOX_CLUSTERED_VOXEL_VISIBILITY_H
 #define RADIVOX_CLUSTERED_VOXEL_VISIBILITY_H
+#include "../../shared/sky.h"
 #include "../../shared/voxel_codec.h"
 RADIVOX_SHARED_BEGIN
 
@@ -10,7 +11,7 @@ RADIVOX_CONST uint kShiftCount = 16u;
 RADIVOX_CONST uint kRaysPerLane = 32u;
 
 // What a ray hit, as the trace leaves it for the merge: a face, with kNearHit if it keeps its id and kCloseHit if it does not count for the
-// face's weight; or kMissHit + bin (6: absorbed).
+// face's weight; or kMissHit + bin (kSkyBinCount: absorbed).
 RADIVOX_CONST uint kNearHit = 0x80000000u;
 RADIVOX_CONST uint kCloseHit = 0x40000000u;
 RADIVOX_CONST uint kHitFace = 0x3fffffffu;
@@ -18,7 +19,7 @@ RADIVOX_CONST float kCloseDistance = 2.0f;  // voxels: surfaces that pass throug
 // Weight of a ray: the area of the face it comes from, in parts of h². With these a face that every ray of its size finds has 128 · 64 · a_s.
 RADIVOX_CONST float kAreaUnits = 64.0f;
 RADIVOX_CONST uint kMostWeight = 0xff000000u;
-RADIVOX_CONST uint kMissHit = 0x7ffffff0u;
+RADIVOX_CONST uint kMissHit = 0x7fffff00u;
 RADIVOX_CONST uint kEmptySlot = 0xffffffffu;
 
 RADIVOX_FUNCTION uint hashBits(uint x) {
@@ -31,13 +32,6 @@ RADIVOX_FUNCTION uint hashBits(uint x) {
 }
 RADIVOX_FUNCTION uint shiftOf(uint face) { return hashBits(face) % kShiftCount; }
 RADIVOX_FUNCTION uint rayRandom(uint face, uint ray) { return hashBits(face * kMaxRays + ray + 0x9e3779b9u); }
-
-// Direction bin of a miss: the dominant axis, numbered as faces are.
-RADIVOX_FUNCTION uint directionBin(vec3 d) {
-  vec3 a = abs(d);
-  uint axis = a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
-  return 2u * axis + (d[axis] < 0.0f ? 1u : 0u);
-}
 
 // A direction of the upper hemisphere ↔ its place on the unit disc, unorm16 × 2: a word each, so that kShiftCount · kMaxRays of them
 // fit the smallest uniform buffer that a device may have.
