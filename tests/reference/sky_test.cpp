@@ -79,7 +79,7 @@ TEST_F(Sky, SlowAnEvenSkyBouncesAsThePathTracerSays) {
 }
 
 // Direct light alone has the sky's, too.
-TEST_F(Sky, ZeroBouncesKeepTheSkysLight) {
+TEST_F(Sky, SlowZeroBouncesKeepTheSkysLight) {
   const scene::Scene scene = courtUnder(glm::vec3(1.f));
   for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
     PipelineOptions options = optionsOf(graph, 24);
@@ -127,7 +127,7 @@ TEST_F(Sky, ConvexBodyUnderAnEvenSky) {
 }
 
 // Another sky traces no ray.
-TEST_F(Sky, AnotherSkyLeavesVisibilityAsItIs) {
+TEST_F(Sky, SlowAnotherSkyLeavesVisibilityAsItIs) {
   scene::Scene scene = courtUnder(glm::vec3(1.f));
   for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
     Pipeline p(device(), scene, optionsOf(graph, 24));
@@ -287,7 +287,7 @@ TEST_F(Sky, TurnsWithItsImage) {
 }
 
 // An even image is the constant sky, in light and behind the scene; and the same bits each time.
-TEST_F(Sky, AnEvenImageIsAConstantSky) {
+TEST_F(Sky, SlowAnEvenImageIsAConstantSky) {
   scene::Scene scene = courtUnder(glm::vec3(0.75f));
   for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
     SCOPED_TRACE(graph);

@@ -85,7 +85,7 @@ TEST_F(LeftOut, Emitters) {
   EXPECT_GT(render(s, tiny(), bit(Feature::Emitters)).bytes, render(s, tiny(), 0).bytes);
 }
 
-TEST_F(LeftOut, Sky) {
+TEST_F(LeftOut, SlowSky) {
   const scene::Scene s = scene::makeBuiltin("cornell_point");
   for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
     PipelineOptions options = tiny();
