@@ -135,7 +135,8 @@ class BounceTest : public oracles::GpuTest {
     const uint32_t weightBits = shared::transferWeightBits(c.clusterCount());
     std::vector<float> sky;
     for (uint32_t i = 0; i < c.clusterCount(); ++i) {
-      for (const auto& [j, w] : c.matrix.rows[i]) entries.push_back(shared::packTransferEntry(j, static_cast<uint32_t>(std::ldexp(w, static_cast<int>(weightBits))), weightBits));
+      for (const auto& [j, w] : c.matrix.rows[i])
+        entries.push_back(shared::packTransferEntry(j, static_cast<uint32_t>(std::ldexp(w, static_cast<int>(weightBits))), weightBits));
       rowStart.push_back(static_cast<uint32_t>(entries.size()));
       sky.push_back(static_cast<float>(c.matrix.sky[i]));
     }

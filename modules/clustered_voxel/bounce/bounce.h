@@ -9,7 +9,7 @@
 //         status             u32 × 4   (read back) iterations; residual as float bits; 1: fell back to plain steps; why it ended
 // runs    when the light, the matrix or the clusters change
 // cost    an iteration is a pass over the matrix (4 B an entry); recorded `iterations` times, those after the end dispatch nothing;
-//         last=faces: a pass over the rows (4 B an entry), which stay in memory for it
+//         last=faces: a pass over the rows (about 14 bits an entry), which stay in memory for it
 // source  METHODS section 1, Bounce: B = B⁰ + ρFB per colour channel, B⁰ = Σ a ρ E_dir / Σ a; beyond the paper, which stops at one bounce
 //
 // request.bounces = n: n − 1 plain steps, so that eyes see n bounces. kAllBounces: until |B⁰ + ρFB − B| ≤ residual · max B⁰ or, where that

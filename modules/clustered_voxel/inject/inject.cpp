@@ -52,10 +52,11 @@ void Inject::prepare(graph::PrepareContext& context) {
     return;
   }
   if (method_ == Method::Splat) {
-    splat_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
-                                                            .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                            .pushConstantBytes = 12,
-                                                            .constants = {{0, context.traits().soleLight()}}});
+    splat_ =
+        gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
+                                                       .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                       .pushConstantBytes = 12,
+                                                       .constants = {{0, context.traits().soleLight()}}});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
@@ -110,8 +111,8 @@ void Inject::record(graph::RecordContext& context) {
     commands.push(push);
     commands.dispatchItems(texels, kGroup);
     commands.barrier();
-    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), irradiance, viewTable, fluxHigh, context.buffer("scene.lights"),
-                             context.buffer("voxels")});
+    commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), irradiance, viewTable, fluxHigh,
+                             context.buffer("scene.lights"), context.buffer("voxels")});
     commands.push(std::array{faceCount, push.lightCount});
     commands.dispatchItems(faceCount, kGroup);
   } else {

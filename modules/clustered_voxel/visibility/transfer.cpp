@@ -21,7 +21,7 @@ struct Push {
 }  // namespace
 
 void Transfer::declare(graph::Declaration& d) {
-  d.read("visibility_row_start", "first entry of each face's row in its chunk");
+  d.read("visibility_row_start", "first bit of each face's row in its chunk");
   d.read("visibility_entries", "rows of the faces, by chunk");
   d.read("chunk_table", "device address of each chunk");
   d.read("faces", "Face");
@@ -30,7 +30,8 @@ void Transfer::declare(graph::Declaration& d) {
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;
   d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
-  d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend").growable = true;
+  d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend")
+      .growable = true;
   d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene");
   d.publishCount("transfer_entries", "", 0);
   d.scratch("total", Shape::buffer(4, 2), "number of entries, low and high word");

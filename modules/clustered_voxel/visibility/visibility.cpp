@@ -337,9 +337,12 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
   commands.barrier();
   struct {
     uint32_t rowCount, rayCount, tableBits, clusterCount, firstFace, faceCount;
-  } mergePush{rows,      rays_,
-              tableBits(rays_), static_cast<uint32_t>(context.count("clusters")),
-              firstFace, static_cast<uint32_t>(context.count("faces"))};
+  } mergePush{rows,
+              rays_,
+              tableBits(rays_),
+              static_cast<uint32_t>(context.count("clusters")),
+              firstFace,
+              static_cast<uint32_t>(context.count("faces"))};
   commands.bind(merge_, {hits, context.buffer("labels"), table, offsets, context.buffer("faces"), context.buffer("weights"),
                          context.buffer("entry_count")});
   commands.push(mergePush);
