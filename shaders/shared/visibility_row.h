@@ -11,9 +11,9 @@ RADIVOX_SHARED_BEGIN
 // Words past a chunk's last bit that a reader may load.
 RADIVOX_CONST uint kRowPadding = 2u;
 
-struct RowEntry {
-  uint step;   // id − the id before − 1
-  uint count;  // rays
+// A number and the bits that it took.
+struct RowCode {
+  uint value;
   uint bits;
 };
 
@@ -43,36 +43,35 @@ RADIVOX_FUNCTION uvec2 encodeRowEntry(uint step, uint count) {
   return uvec2(low | gamma << at, gamma >> (32u - at));
 }
 
-// From 64 bits that begin with the entry.
-RADIVOX_FUNCTION RowEntry decodeRowEntry(uvec2 bits) {
-  RowEntry entry;
-  uint width = bits.x & 31u;
+// From 32 bits that begin with it: id − the id before − 1.
+RADIVOX_FUNCTION RowCode decodeStep(uint bits) {
+  uint width = bits & 31u;
   uint below = max(width, 1u) - 1u;
-  entry.step = width == 0u ? 0u : 1u << below | ((bits.x >> 5u) & ((1u << below) - 1u));
-  uint at = 5u + below;
-  uint gamma = bits.x >> at | bits.y << (32u - at);
-  uint zeros = uint(bitCount((gamma & (~gamma + 1u)) - 1u));
-  entry.count = 1u << zeros | ((gamma >> (zeros + 1u)) & ((1u << zeros) - 1u));
-  entry.bits = at + 2u * zeros + 1u;
-  return entry;
+  RowCode code;
+  code.value = width == 0u ? 0u : 1u << below | ((bits >> 5u) & ((1u << below) - 1u));
+  code.bits = 5u + below;
+  return code;
 }
-
-// Bits [at, at + 64) of three words that begin with the one that holds `at`.
-RADIVOX_FUNCTION uvec2 rowWindow(uint a, uint b, uint c, uint at) {
-  uint shift = at & 31u;
-  return shift == 0u ? uvec2(a, b) : uvec2(a >> shift | b << (32u - shift), b >> shift | c << (32u - shift));
+RADIVOX_FUNCTION RowCode decodeCount(uint bits) {
+  uint zeros = uint(bitCount((bits & (~bits + 1u)) - 1u));
+  RowCode code;
+  code.value = 1u << zeros | ((bits >> (zeros + 1u)) & ((1u << zeros) - 1u));
+  code.bits = 2u * zeros + 1u;
+  return code;
 }
 
 #ifdef __cplusplus
 /// visit(id, count) for each entry of the row at bits [at, end) of a chunk, padding included.
 template <class Visit>
 void forEachRowEntry(const uint* words, uint at, uint end, uint idCount, Visit&& visit) {
+  const auto bits = [&] { return at % 32 == 0 ? words[at / 32] : words[at / 32] >> at % 32 | words[at / 32 + 1] << (32 - at % 32); };
   for (uint next = 0; at < end;) {
-    const uint* w = words + at / 32;
-    const RowEntry entry = decodeRowEntry(rowWindow(w[0], w[1], w[2], at));
-    visit(entryId(next + entry.step, idCount), entry.count);
-    next += entry.step + 1;
-    at += entry.bits;
+    const RowCode step = decodeStep(bits());
+    at += step.bits;
+    const RowCode count = decodeCount(bits());
+    at += count.bits;
+    visit(entryId(next + step.value, idCount), count.value);
+    next += step.value + 1;
   }
 }
 #endif

@@ -11,22 +11,42 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Row
 uint rowSlot(uint s) { return s + s / kRowsPerChunk; }
 
 struct VisibilityRow {
-  uvec2 chunk;  // its address
+  uvec2 chunk;   // its address
   uint at, end;  // bits
   uint next;     // the least id that may follow
+  uvec2 window;  // bits from `at` on, x first
+  uint held;     // of these: so many
 };
-VisibilityRow openRow(uvec2 chunk, uint at, uint end) { return VisibilityRow(chunk, at, end, 0u); }
+VisibilityRow openRow(uvec2 chunk, uint at, uint end) {
+  uint shift = at & 31u;
+  return VisibilityRow(chunk, at, end, 0u, uvec2(at < end ? RowBits(chunk).words[at >> 5] >> shift : 0u, 0u), 32u - shift);
+}
 bool hasEntry(VisibilityRow row) { return row.at < row.end; }
+
+// Words are loaded once, as they come: a number takes 28 bits at most.
+uint rowBits(inout VisibilityRow row) {
+  if (row.held < 32u) {
+    uint word = RowBits(row.chunk).words[(row.at + row.held) >> 5];
+    row.window = row.held == 0u ? uvec2(word, 0u) : uvec2(row.window.x | word << row.held, word >> (32u - row.held));
+    row.held += 32u;
+  }
+  return row.window.x;
+}
+void skipBits(inout VisibilityRow row, uint bits) {
+  row.window = uvec2(row.window.x >> bits | row.window.y << (32u - bits), row.window.y >> bits);
+  row.held -= bits;
+  row.at += bits;
+}
 
 // id | (count − 1) << 24.
 uint nextEntry(inout VisibilityRow row, uint idCount) {
-  RowBits bits = RowBits(row.chunk);
-  uint word = row.at >> 5;
-  RowEntry entry = decodeRowEntry(rowWindow(bits.words[word], bits.words[word + 1u], bits.words[word + 2u], row.at));
-  uint id = entryId(row.next + entry.step, idCount);
-  row.next += entry.step + 1u;
-  row.at += entry.bits;
-  return id | (entry.count - 1u) << 24;
+  RowCode step = decodeStep(rowBits(row));
+  skipBits(row, step.bits);
+  RowCode count = decodeCount(rowBits(row));
+  skipBits(row, count.bits);
+  uint id = entryId(row.next + step.value, idCount);
+  row.next += step.value + 1u;
+  return id | (count.value - 1u) << 24;
 }
 
 #endif

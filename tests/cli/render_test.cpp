@@ -182,6 +182,17 @@ TEST_F(RenderCommand, StatisticsSayWhatRan) {
   EXPECT_NEAR(phases, wall.at("total").get<double>(), 0.05 * phases);
 }
 
+// What the method keeps (docs/data_flow.md, Memory), and what it needs for a while beside.
+TEST_F(RenderCommand, MemoryAVoxelIsBounded) {
+  ASSERT_NO_FATAL_FAILURE(
+      expectDone(render("builtin:cornell_point", {"--graph", "clustered_voxel_pixels", "--out", path("a.exr"), "--stats", path("a.json"),
+                                                  "--set", "visibility.rays=16", "--set", "voxelize.resolution=64"})));
+  const json stats = json::parse(read("a.json"));
+  const json& memory = stats.at("memory");
+  EXPECT_LT(stats.at("bytes_per_voxel").get<double>(), 375.0) << memory.dump(2);
+  EXPECT_LT(memory.at("device_peak").get<double>(), 1.5 * memory.at("device_current").get<double>());
+}
+
 TEST_F(RenderCommand, TheSameCommandWritesTheSameFile) {
   for (const char* name : {"a", "b"}) {
     ASSERT_NO_FATAL_FAILURE(

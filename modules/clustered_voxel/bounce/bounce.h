@@ -9,11 +9,11 @@
 //         status             u32 × 4   (read back) iterations; residual as float bits; 1: fell back to plain steps; why it ended
 // runs    when the light, the matrix or the clusters change
 // cost    an iteration is a pass over the matrix (4 B an entry); recorded `iterations` times, those after the end dispatch nothing;
-//         last=faces: a pass over the rows (4 B an entry), which stay in memory for it
+//         last=faces: a pass over the rows (about 14 bits an entry), which stay in memory for it
 // source  METHODS section 1, Bounce: B = B⁰ + ρFB per colour channel, B⁰ = Σ a ρ E_dir / Σ a; beyond the paper, which stops at one bounce
 //
 // request.bounces = n: n − 1 plain steps, so that eyes see n bounces. kAllBounces: until |B⁰ + ρFB − B| ≤ residual · max B⁰ or, where that
-// is out of float's reach (ρ near 1), 2⁻²² max B; the error is at most the residual / (1 − r), r the spectral radius of ρF. The solver
+// is out of float's reach (ρ near 1), 2⁻²³ max B; the error is at most the residual / (1 − r), r the spectral radius of ρF. The solver
 // starts below every solution, at −max B⁰: then its first residual is positive, eight plain steps keep it so, and the greatest ratio of two
 // successive residuals bounds r from above (Collatz, Wielandt), much closer than max ρ does. Chebyshev iteration for eigenvalues in [−r, r]
 // takes it from there, in about ln(1/residual) / √(2(1 − r)) steps, and where a lit cluster's own residual is then above 10⁻³ of itself (it

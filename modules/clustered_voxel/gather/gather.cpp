@@ -22,7 +22,7 @@ void Gather::declare(graph::Declaration& d) {
         ErrorCode::BadInput,
         "gather.estimator=differential has no ray counts to tell an error by; leave AOV error out, or use gather.estimator=counted");
   d.read("needed", "bit per face");
-  d.read("row_start", "first entry of each face's row in its chunk");
+  d.read("row_start", "first bit of each face's row in its chunk");
   d.read("entries", "visibility entries");
   d.read("chunk_table", "device address of each chunk");
   d.read("faces", "Face");

@@ -21,7 +21,7 @@ struct Push {
 }  // namespace
 
 void Transfer::declare(graph::Declaration& d) {
-  d.read("visibility_row_start", "first entry of each face's row in its chunk");
+  d.read("visibility_row_start", "first bit of each face's row in its chunk");
   d.read("visibility_entries", "rows of the faces, by chunk");
   d.read("chunk_table", "device address of each chunk");
   d.read("faces", "Face");

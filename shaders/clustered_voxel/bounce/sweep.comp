@@ -14,7 +14,7 @@ layout(set = 0, binding = 6, scalar) coherent buffer Control { BounceControl con
 const uint kWarmUpSweeps = 8u;
 const uint kWindowSweeps = 16u;
 // Where rounding of x itself, 2⁻²⁴ of it, and of the terms of r keeps r from falling.
-const float kRoundingFloor = 2.384185791015625e-7;  // 2⁻²²
+const float kRoundingFloor = 1.1920928955078125e-7;  // 2⁻²³
 const uint kInfinity = 0x7f800000u;
 // The residual is measured against the brightest source. A lamp that is 10¹⁵ times dimmer, in a room of its own, would be lost in it: what is
 // lit must also be right to this part of itself, and plain steps from b or above, which only ever add light, see to that.
