@@ -178,7 +178,7 @@ scene::Scene openPlane(std::shared_ptr<const scene::Sky> sky) {
 
 TEST(SkyInClosedForm, AGradientOnAnOpenPlane) {
   // L = a + b cos θ: E = π a + 2π b / 3 from above, and with the normal square to the gradient π a.
-  const auto sky = paintSky([](const glm::dvec3& d) { return glm::vec3(1 + 0.5 * d.y); });
+  const auto sky = paintSky([](const glm::dvec3& d) { return glm::vec3(static_cast<float>(1 + 0.5 * d.y)); });
   const scene::Scene scene = openPlane(sky);
   const reference::ProbeValue up = reference_test::probe(scene, {0, 0, 0}, {0, 1, 0}, 0, 16384);
   const double exact = kPi * (1 + 2 * 0.5 / 3);
@@ -215,7 +215,7 @@ TEST(SkyInClosedForm, ASunOnAnOpenPlane) {
 }
 
 TEST(SkyImageReference, AnotherSkyIsAnotherScene) {
-  const auto sky = [](double turn) { return paintSky([](const glm::dvec3& d) { return glm::vec3(1 + d.x); }, turn); };
+  const auto sky = [](double turn) { return paintSky([](const glm::dvec3& d) { return glm::vec3(static_cast<float>(1 + d.x)); }, turn); };
   const uint64_t one = reference::PathTracer(openPlane(sky(0))).fingerprint();
   EXPECT_EQ(reference::PathTracer(openPlane(sky(0))).fingerprint(), one);
   EXPECT_NE(reference::PathTracer(openPlane(sky(5))).fingerprint(), one);
@@ -304,7 +304,7 @@ TEST_F(Sky, SlowAnEvenImageIsAConstantSky) {
     for (size_t i = 0; i < expected.data.size(); ++i) ASSERT_NEAR(found.data[i], expected.data[i], 1e-3f * expected.data[i]) << i;
     EXPECT_EQ(again.picture("composite.color").data, found.data);
     // Another image traces no ray either.
-    scene.sky = paintSky([](const glm::dvec3& d) { return glm::vec3(0.5 + 0.4 * d.y); });
+    scene.sky = paintSky([](const glm::dvec3& d) { return glm::vec3(static_cast<float>(0.5 + 0.4 * d.y)); });
     even.setLights(scene);
     even.run();
     EXPECT_EQ(even.runCount("visibility"), 1u);

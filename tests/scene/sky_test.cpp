@@ -112,7 +112,8 @@ TEST(SkyImage, MeansKeepTheFlux) {
     for (const std::vector<glm::vec3>* means : {&even->bins, &even->cells}) {
       for (const glm::vec3& mean : *means) ASSERT_LT(glm::distance(mean, glm::vec3(0.25f, 1.f, 3.f)), 1e-5f);
     }
-    const auto slope = makeSky(paint(width, [](const glm::dvec3& d) { return glm::vec3(2 + d.x + 0.5 * d.y); }), "slope");
+    const auto slope =
+        makeSky(paint(width, [](const glm::dvec3& d) { return glm::vec3(static_cast<float>(2 + d.x + 0.5 * d.y)); }), "slope");
     double flux = 0, texelFlux = 0;
     for (size_t i = 0; i < angles.size(); ++i) flux += angles[i] * static_cast<double>(slope->bins[i].x);
     for (size_t i = 0; i < slope->texels.size(); ++i)
