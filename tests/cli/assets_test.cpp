@@ -38,7 +38,7 @@ std::string sectionOf(const std::string& info, const std::string& type) {
   return info.substr(begin, end - begin);
 }
 
-TEST(Assets, EveryGraphCompilesForEveryKindOfScene) {
+TEST(Assets, SlowEveryGraphCompilesForEveryKindOfScene) {
   const std::string info = runRadivox({"info"}).out;
   for (const fs::path& path : listAssets("graphs")) {
     const std::string name = path.stem();
@@ -54,7 +54,7 @@ TEST(Assets, EveryGraphCompilesForEveryKindOfScene) {
   }
 }
 
-TEST(Assets, EveryAovOfAGraphCanBePlanned) {
+TEST(Assets, SlowEveryAovOfAGraphCanBePlanned) {
   for (const fs::path& path : listAssets("graphs")) {
     const json graph = parseFile(path);
     EXPECT_TRUE(graph.at("aovs").contains("color"));

@@ -39,7 +39,7 @@ class RenderCommand : public CommandTest {
   }
 };
 
-TEST_F(RenderCommand, TakesASkyInPlaceOfTheScenesOwn) {
+TEST_F(RenderCommand, SlowTakesASkyInPlaceOfTheScenesOwn) {
   const CommandResult clear =
       runRadivox(render("builtin:staircase", {"--sky", "builtin:clear?turn=40", "--validate", "--out", path("a.exr")}));
   EXPECT_EQ(clear.exitCode, 0);
@@ -109,7 +109,7 @@ TEST_F(RenderCommand, OneAovIsWrittenAsRgb) {
   }
 }
 
-TEST_F(RenderCommand, EveryAovHasAPreview) {
+TEST_F(RenderCommand, SlowEveryAovHasAPreview) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> byGraph = {
       {"direct", {"color", "direct", "irradiance_direct", "albedo", "normal", "position", "depth", "display"}},
       {"clustered_voxel", {"indirect", "face", "cluster"}}};
@@ -193,7 +193,7 @@ TEST_F(RenderCommand, MemoryAVoxelIsBounded) {
   EXPECT_LT(memory.at("device_peak").get<double>(), 1.5 * memory.at("device_current").get<double>());
 }
 
-TEST_F(RenderCommand, TheSameCommandWritesTheSameFile) {
+TEST_F(RenderCommand, SlowTheSameCommandWritesTheSameFile) {
   for (const char* name : {"a", "b"}) {
     ASSERT_NO_FATAL_FAILURE(
         expectDone(render("builtin:cornell", {"--out", path(std::string(name) + ".exr"), "--out", path(std::string(name) + ".png")})));
@@ -261,7 +261,7 @@ TEST_F(RenderCommand, AnEmptySceneIsAPicture) {
   EXPECT_EQ(image::meanOf(image::readExr(path("a.exr")).at(0).image), 0.0);
 }
 
-TEST_F(RenderCommand, InterruptionLeavesNothing) {
+TEST_F(RenderCommand, SlowInterruptionLeavesNothing) {
   for (const int signal : {SIGINT, SIGTERM}) {
     CommandSetup setup;
     setup.signal = signal;
@@ -277,7 +277,7 @@ TEST_F(RenderCommand, InterruptionLeavesNothing) {
   }
 }
 
-TEST_F(RenderCommand, BuiltinScenesComeBackFromAFile) {
+TEST_F(RenderCommand, SlowBuiltinScenesComeBackFromAFile) {
   ASSERT_NO_FATAL_FAILURE(expectDone({"scene", "cornell_point", "--out", path("c.glb")}));
   ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--out", path("a.exr")})));
   ASSERT_NO_FATAL_FAILURE(expectDone(render(path("c.glb"), {"--out", path("b.exr")})));

@@ -23,7 +23,7 @@ class Sturdy : public CommandTest {
   }
 };
 
-TEST_F(Sturdy, ADiskThatIsFullLeavesNoHalfFile) {
+TEST_F(Sturdy, SlowADiskThatIsFullLeavesNoHalfFile) {
   ASSERT_EQ(runRadivox(render("truth.exr")).exitCode, 0);
   const std::string old = read("truth.exr");
   // No cache: it may be too large as well, and is no one's output.

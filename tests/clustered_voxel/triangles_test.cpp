@@ -124,7 +124,7 @@ TEST_F(TrianglesTest, CrowdedVoxelsHaveNoList) {
 }
 
 /// Where triangles.corners is not read (too many triangles, or a graph without the edge) rays load vertices.
-TEST_F(TrianglesTest, CornersAndVerticesGiveTheSameBits) {
+TEST_F(TrianglesTest, SlowCornersAndVerticesGiveTheSameBits) {
   const auto render = [](bool corners) {
     PipelineOptions options;
     options.graph = "clustered_voxel_pixels";

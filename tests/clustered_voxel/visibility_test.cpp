@@ -58,7 +58,7 @@ TEST_F(VisibilityTest, FinerBinsOfDirectionsEqualTheirDefinition) {
   EXPECT_EQ(bins, 1u);
 }
 
-TEST_F(VisibilityTest, AnyNumberOfRays) {
+TEST_F(VisibilityTest, SlowAnyNumberOfRays) {
   const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 12);
   for (const uint32_t rays : {1u, 2u, 3u, 31u, 33u, 100u, 255u, 256u}) checkRows(device(), s, {.rays = rays});
 }
@@ -77,7 +77,7 @@ TEST_F(VisibilityTest, NearHitsKeepTheirFace) {
   }
 }
 
-TEST_F(VisibilityTest, ManyChunksAndEveryWayOverEmptySpace) {
+TEST_F(VisibilityTest, SlowManyChunksAndEveryWayOverEmptySpace) {
   // More than two chunks of faces: rows are found again in theirs, and leaping changes nothing.
   const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 64);
   ASSERT_GT(s.faces.size(), 2 * shared::kRowsPerChunk);
@@ -106,7 +106,7 @@ TEST_F(VisibilityTest, TwoRunsSameBits) {
   EXPECT_EQ(run.harness.runCount("visibility"), 3u);
 }
 
-TEST_F(VisibilityTest, GridsOneVoxelThick) {
+TEST_F(VisibilityTest, SlowGridsOneVoxelThick) {
   // A sheet in a plane of the grid: one voxel across it. Rays leave at once or run along it.
   for (int axis = 0; axis < 3; ++axis) {
     oracle::Soup soup;

@@ -265,7 +265,7 @@ TEST_F(VoxelizeTest, ThinWallHasTwoSidesOfItsOwn) {
   EXPECT_NEAR(back * h2, 1.0, 1e-5);
 }
 
-TEST_F(VoxelizeTest, AreaOfVoxelsIsAreaOfTheMesh) {
+TEST_F(VoxelizeTest, SlowAreaOfVoxelsIsAreaOfTheMesh) {
   const std::vector<std::pair<std::string, uint32_t>> cases{{"cornell", 8}, {"cornell", 61}, {"cornell", 256},
                                                             {"sphere", 8},  {"sphere", 256}, {"thin_wall", 61}};
   for (const auto& [name, resolution] : cases) {

@@ -64,7 +64,7 @@ TEST(ReferenceClosedForm, SphereOfKnownRadianceAtADistance) {
   }
 }
 
-TEST(ReferenceClosedForm, ConvexBodyUnderAnEvenSky) {
+TEST(ReferenceClosedForm, SlowConvexBodyUnderAnEvenSky) {
   // Nothing hides the sky from a convex body: E = π L on every side of a box, and nothing is reflected onto it.
   scene::MeshBuilder mesh("block");
   mesh.addBlock(glm::dvec3(0), glm::dvec3(1), 0.3, mesh.addMaterial("grey", glm::vec3(0.8f)));

@@ -94,7 +94,7 @@ TEST_F(Sky, SlowZeroBouncesKeepTheSkysLight) {
 }
 
 // Nothing hides the sky from a convex body, and nothing shines on it: E = π L.
-TEST_F(Sky, ConvexBodyUnderAnEvenSky) {
+TEST_F(Sky, SlowConvexBodyUnderAnEvenSky) {
   scene::MeshBuilder mesh("block");
   mesh.addBlock(glm::dvec3(0), glm::dvec3(1), 0, mesh.addMaterial("grey", glm::vec3(0.8f)));
   mesh.setSky(glm::vec3(0.5f, 1.f, 2.f));
@@ -250,7 +250,7 @@ TEST_F(Sky, SlowASunOfTheImageIsALight) {
 }
 
 // Turned a quarter, the light of each side of a block is that of the next.
-TEST_F(Sky, TurnsWithItsImage) {
+TEST_F(Sky, SlowTurnsWithItsImage) {
   scene::MeshBuilder mesh("block");
   mesh.addBlock(glm::dvec3(0), glm::dvec3(1), 0, mesh.addMaterial("grey", glm::vec3(0.8f)));
   mesh.addCamera("c", {2, 2, 3}, {0, 0, 0}, 0.4);

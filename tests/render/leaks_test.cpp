@@ -99,7 +99,7 @@ TEST_F(Leaks, SlowLittleLightComesIntoASealedRoom) {
 
 // A lamp in the first of two rooms, a wall of 0.2 m between them: one to two voxels, wherever in them it happens to lie. Clusters of the floor, the
 // ceiling and the side walls that reached under the wall brought three hundredths of the lit room's light to the other side.
-TEST_F(Leaks, ClustersDoNotReachThroughWalls) {
+TEST_F(Leaks, SlowClustersDoNotReachThroughWalls) {
   for (const uint32_t resolution : {40u, 56u}) {
     PipelineOptions options;
     options.graph = "clustered_voxel_pixels";

@@ -79,7 +79,7 @@ TEST_F(LeftOut, SlowSingleSides) {
 
 TEST_F(LeftOut, SlowPunctualLights) { expectSameBits(scene::makeBuiltin("cornell"), tiny(), Feature::PunctualLights); }
 
-TEST_F(LeftOut, Emitters) {
+TEST_F(LeftOut, SlowEmitters) {
   const scene::Scene s = scene::makeBuiltin("cornell_point");
   expectSameBits(s, tiny(), Feature::Emitters);
   EXPECT_GT(render(s, tiny(), bit(Feature::Emitters)).bytes, render(s, tiny(), 0).bytes);
@@ -261,7 +261,7 @@ TEST_F(LeftOut, TheListSaysWhyAndWhatItWouldCost) {
 }
 
 // A finer grid than the shapes can use is another picture: the plan advises, and changes nothing.
-TEST_F(LeftOut, AFinerGridThanTheShapesNeedIsAdvisedAgainst) {
+TEST_F(LeftOut, SlowAFinerGridThanTheShapesNeedIsAdvisedAgainst) {
   const auto adviceAt = [](const std::string& builtin, const char* resolution) {
     PipelineOptions options = tiny();
     options.settings = {{"voxelize.resolution", resolution}};

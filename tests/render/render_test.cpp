@@ -132,7 +132,7 @@ TEST_F(Render, ClustersSendBackTheWeightedMeanOfTheirFaces) {
   EXPECT_GT(unseen, 0u) << "the outer sides of the box";
 }
 
-TEST_F(Render, LightMoveTracesNothingAgain) {
+TEST_F(Render, SlowLightMoveTracesNothingAgain) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
   Pipeline p(oracles::sharedDevice(), s, small(20));
   p.run();
@@ -152,7 +152,7 @@ TEST_F(Render, LightMoveTracesNothingAgain) {
   EXPECT_EQ(fresh.picture("composite.color").data, p.picture("composite.color").data);
 }
 
-TEST_F(Render, LazyGatherEqualsGatherAllOnNeededFaces) {
+TEST_F(Render, SlowLazyGatherEqualsGatherAllOnNeededFaces) {
   PipelineOptions lazy = small(20), all = small(20);
   lazy.outputs = all.outputs = {"composite.color", "gather.irradiance", "gather.valid"};
   all.settings.push_back({"gather.lazy", "off"});
@@ -304,7 +304,7 @@ TEST_F(Render, SunOnAPlaneInjectsItsCosine) {
   EXPECT_EQ(p.figure("inject", "lost_texels"), 0.0);
 }
 
-TEST_F(Render, PointLightInABoxLosesNoFlux) {
+TEST_F(Render, SlowPointLightInABoxLosesNoFlux) {
   scene::Scene s = scene::makeBuiltin("box");
   s.lights.clear();
   scene::PunctualLight lamp;
@@ -329,7 +329,7 @@ TEST_F(Render, PointLightInABoxLosesNoFlux) {
 }
 
 // Light from 1e9 down to 1e-6 W/sr: fixed-point sums follow the lights' range.
-TEST_F(Render, IrradianceScalesWithTheLight) {
+TEST_F(Render, SlowIrradianceScalesWithTheLight) {
   std::vector<float> first;
   for (const float scale : {1.f, 1e9f, 1e-6f}) {
     scene::Scene s = scene::makeBuiltin("cornell_point");
