@@ -315,13 +315,13 @@ TEST_F(ReportCommand, SlowFiguresHangTogether) {
   CommandSetup patient;
   patient.timeLimitSeconds = 110;
   const auto start = std::chrono::steady_clock::now();
-  const CommandResult result = runRadivox(report({"--time-limit", "22", "--reference-error", "0.06"}), patient);
+  const CommandResult result = runRadivox(report({"--time-limit", "32", "--reference-error", "0.06"}), patient);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(result.out, path("out") + "/report.html\n");
   // A step that has begun is finished, and a busy machine may be slow at that.
-  EXPECT_LT(seconds, 22 + 12);
+  EXPECT_LT(seconds, 32 + 16);
 
   const std::vector<CsvRow> rows = parseCsv(read("out/data.csv"));
   const json data = json::parse(read("out/data.json"));
