@@ -149,7 +149,7 @@ TEST_F(Surfaces, SlowAslantCurvedAndThinOnesErrNoMoreThanFlatOnes) {
   std::array<uint32_t, kKindCount> materials{};
   const scene::Scene room = makeRoom(materials);
   const reference::PathTracer tracer(room);
-  const reference::Images truth = tracer.render(room.cameras.at(0), {.width = kWidth, .height = kHeight, .spp = 256});
+  const reference::Images truth = tracer.render(room.cameras.at(0), {.width = kWidth, .height = kHeight, .spp = 128});
   for (const char* resolution : {"64", "128"}) {
     oracles::PipelineOptions options;
     options.graph = "clustered_voxel_pixels";
