@@ -183,7 +183,7 @@ TEST_F(RenderCommand, StatisticsSayWhatRan) {
 }
 
 // What the method keeps (docs/data_flow.md, Memory), and what it needs for a while beside.
-TEST_F(RenderCommand, MemoryAVoxelIsBounded) {
+TEST_F(RenderCommand, SlowMemoryAVoxelIsBounded) {
   ASSERT_NO_FATAL_FAILURE(
       expectDone(render("builtin:cornell_point", {"--graph", "clustered_voxel_pixels", "--out", path("a.exr"), "--stats", path("a.json"),
                                                   "--set", "visibility.rays=16", "--set", "voxelize.resolution=64"})));

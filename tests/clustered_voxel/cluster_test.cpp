@@ -112,11 +112,11 @@ class ClusterTest : public oracles::GpuTest {
   }
 };
 
-TEST_F(ClusterTest, SphereEqualsOracle) { check(voxelsOf("sphere", 40), {}); }
+TEST_F(ClusterTest, SlowSphereEqualsOracle) { check(voxelsOf("sphere", 40), {}); }
 TEST_F(ClusterTest, StaircaseEqualsOracle) { check(voxelsOf("staircase", 40), {}); }
 TEST_F(ClusterTest, CornellEqualsOracle) { check(voxelsOf("cornell", 48), {}); }
 
-TEST_F(ClusterTest, RubbleEqualsOracle) {
+TEST_F(ClusterTest, SlowRubbleEqualsOracle) {
   const Output out = check(rubble(300, 32, 1), {});
   EXPECT_GT(out.figures.at("orphans"), 0);  // or founding clusters went untested
   EXPECT_GT(out.figures.at("merged"), 0);

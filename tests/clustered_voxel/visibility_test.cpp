@@ -35,7 +35,7 @@ TEST_F(VisibilityTest, RandomSoupsAndOneSidedSurfaces) {
   }
 }
 
-TEST_F(VisibilityTest, EveryVariantEqualsItsDefinition) {
+TEST_F(VisibilityTest, SlowEveryVariantEqualsItsDefinition) {
   const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 20);
   for (const bool axis : {false, true}) {
     for (const bool voxel : {false, true}) checkRows(device(), s, {.rays = 24, .axisFrame = axis, .voxelHit = voxel});
@@ -63,7 +63,7 @@ TEST_F(VisibilityTest, SlowAnyNumberOfRays) {
   for (const uint32_t rays : {1u, 2u, 3u, 31u, 33u, 100u, 255u, 256u}) checkRows(device(), s, {.rays = rays});
 }
 
-TEST_F(VisibilityTest, NearHitsKeepTheirFace) {
+TEST_F(VisibilityTest, SlowNearHitsKeepTheirFace) {
   const VoxelStructures s = buildVoxelStructures(oracle::roomSoup(), 16);
   for (const float near : {0.f, 1.f, 6.f, 4096.f}) {
     const std::vector<Row> rows = checkRows(device(), s, {.rays = 32, .near = near});

@@ -165,7 +165,7 @@ TEST_F(VoxelizeTest, RandomTrianglesAreConservativeWithinTheBound) {
   }
 }
 
-TEST_F(VoxelizeTest, LongTrianglesThatTouchCornersAreNotLost) {
+TEST_F(VoxelizeTest, SlowLongTrianglesThatTouchCornersAreNotLost) {
   // N = 1024 and h = 1 m: grid space is exact. The long edge passes exactly through a corner of voxels near its far end, so the cubes
   // beside it are just touched, and float products, which there round by more than the dilation, would lose some of them.
   constexpr float kUnit = 1.f / 16384.f;  // all coordinates are multiples: 24 bits
@@ -384,7 +384,7 @@ TEST_F(VoxelizeTest, AlphaMaskTakesItsShareOfArea) {
   for (const std::string& method : otherMethods()) expectSame(reference, VoxelRun(device(), scene, 33, method).structures());
 }
 
-TEST_F(VoxelizeTest, SponzaKeepsItsAreaAndTheBound) {
+TEST_F(VoxelizeTest, SlowSponzaKeepsItsAreaAndTheBound) {
   const std::string shared = oracles::sharedFolder();
   if (shared.empty()) GTEST_SKIP() << "no shared scenes";
   const scene::Scene scene = scene::loadScene(shared + "/scenes/sponza.glb");

@@ -193,7 +193,7 @@ void addSphere(SceneBuilder& b, const glm::vec3& centre, float radius, uint32_t 
     b.scene.vertices[i].normal = glm::normalize(b.scene.vertices[i].position - centre);
 }
 
-TEST_F(ShadowTest, CurvedSurfacesHaveNoAcne) {
+TEST_F(ShadowTest, SlowCurvedSurfacesHaveNoAcne) {
   // Convex from outside, concave from inside, coarse and fine: what rays say is lit must be fully lit.
   for (const uint32_t rings : {8u, 64u}) {
     for (const bool inside : {false, true}) {

@@ -35,7 +35,7 @@ class FrameTruthTest : public oracles::GpuTest {
 };
 
 TEST_F(FrameTruthTest, CornellPoint) { compare("cornell_point", 0.5, 30.0); }
-TEST_F(FrameTruthTest, CornellEmitter) { compare("cornell", 0.5, 30.0); }
+TEST_F(FrameTruthTest, SlowCornellEmitter) { compare("cornell", 0.5, 30.0); }
 TEST_F(FrameTruthTest, SponzaSun) { compare("sponza", 0.25, 30.0); }
 
 }  // namespace

@@ -185,7 +185,7 @@ class RandomGraph {
 
 class RandomGraphTest : public GpuTest {};
 
-TEST_F(RandomGraphTest, EveryFrameEqualsTheHostEvaluation) {
+TEST_F(RandomGraphTest, SlowEveryFrameEqualsTheHostEvaluation) {
   uint32_t recorded = 0;
   for (uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -172,7 +172,7 @@ TEST_F(Render, SlowLazyGatherEqualsGatherAllOnNeededFaces) {
   EXPECT_EQ(a.picture("composite.color").data, b.picture("composite.color").data);
 }
 
-TEST_F(Render, SameBitsTwice) {
+TEST_F(Render, SlowSameBitsTwice) {
   for (const char* name : {"cornell", "two_rooms"}) {
     PipelineOptions options = small(20);
     options.outputs = {"composite.color",    "surface.faces",     "cluster.labels",         "visibility.row_start",
