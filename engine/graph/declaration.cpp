@@ -19,6 +19,14 @@ Port& Declaration::read(std::string name, std::string meaning, uint32_t use) {
   return append(ports, std::move(name), Access::Read, {}, std::move(meaning), use);
 }
 
+Port& Declaration::readIf(bool wanted, std::string name, std::string meaning, std::string reason, uint32_t use) {
+  Port& port = read(std::move(name), std::move(meaning), use);
+  port.optional = true;
+  port.unwanted = !wanted;
+  port.unwantedReason = std::move(reason);
+  return port;
+}
+
 Port& Declaration::write(std::string name, Shape shape, std::string meaning, uint32_t use) {
   return append(ports, std::move(name), Access::Write, std::move(shape), std::move(meaning), use);
 }

@@ -72,6 +72,8 @@ class Declaration {
 
   /// Input. Names that begin with "scene." or "view." connect themselves to the import of that name.
   Port& read(std::string name, std::string meaning, uint32_t use = UseCompute);
+  /// An input that may stay unconnected; unless `wanted`, it is not needed for this scene or request, for `reason`.
+  Port& readIf(bool wanted, std::string name, std::string meaning, std::string reason, uint32_t use = UseCompute);
   Port& write(std::string name, Shape shape, std::string meaning, uint32_t use = UseCompute | UseTransfer);
   Port& modify(std::string name, std::string meaning, uint32_t use = UseCompute);
   Port& scratch(std::string name, Shape shape, std::string meaning, uint32_t use = UseCompute | UseTransfer);

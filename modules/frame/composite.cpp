@@ -17,15 +17,10 @@ void Composite::declare(graph::Declaration& d) {
   indirect.unwanted = (!d.traits.sky || d.traits.skyImage) && (!d.request.wantsIndirect() || nothingBounces != nullptr) &&
                       !d.traits.keeps(scene::Feature::Bounces);
   indirect.unwantedReason = !d.request.wantsIndirect() ? "0 bounces asked for and no sky" : nothingBounces != nullptr ? nothingBounces : "";
-  const auto readImage = [&d](const char* name, const char* meaning) {
-    graph::Port& port = d.read(name, meaning);
-    port.optional = true;
-    port.unwanted = !d.traits.skyImage;
-    port.unwantedReason = "the sky has no image";
-  };
-  readImage("sky", "E_sky, W/m²");
-  readImage("scene.sky", "the sky's image");
-  readImage("view.camera", "Camera");
+  constexpr const char* kNoImage = "the sky has no image";
+  d.readIf(d.traits.skyImage, "sky", "E_sky, W/m²", kNoImage);
+  d.readIf(d.traits.skyImage, "scene.sky", "the sky's image", kNoImage);
+  d.readIf(d.traits.skyImage, "view.camera", "Camera", kNoImage);
   const Shape shape = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
   d.write("color", shape, "radiance, W/(m² sr); a: 1 surface, 0 sky");
   d.write("direct", shape, "ρ E_direct / π, with the sky's light").optional = true;

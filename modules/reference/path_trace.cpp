@@ -48,11 +48,11 @@ PathTrace::PathTrace()
 
 void PathTrace::declare(graph::Declaration& d) {
   for (const char* port : kScenePorts) {
-    graph::Port& read = d.read(port, "the scene", graph::UseTransfer | graph::UseCompute);
-    if (std::string_view(port) != "scene.sky") continue;
-    read.optional = true;
-    read.unwanted = !d.traits.skyImage;
-    read.unwantedReason = "the sky has no image";
+    constexpr uint32_t kUse = graph::UseTransfer | graph::UseCompute;
+    if (std::string_view(port) == "scene.sky")
+      d.readIf(d.traits.skyImage, port, "the scene", "the sky has no image", kUse);
+    else
+      d.read(port, "the scene", kUse);
   }
   d.read("view.camera", "Camera", graph::UseTransfer);
   for (const Result& result : kResults) {

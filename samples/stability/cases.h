@@ -20,7 +20,9 @@ RenderOptions coarse(uint32_t resolution = 32);
 void compareScenes(Bench& bench, Row& row, scene::Scene reference, scene::Scene test, const RenderOptions& options, double tolerance,
                    const std::string& aov = "irradiance_indirect");
 
-/// The path tracer's mean indirect irradiance at `options`' picture, from `spp` samples a pixel; only where Bench::hasGraph("reference").
+/// False, and the row says so, in a build without the path tracer.
+bool canTrace(const Bench& bench, Row& row);
+/// The path tracer's mean indirect irradiance at `options`' picture, from `spp` samples a pixel; only where canTrace.
 double traceMean(Bench& bench, const scene::Scene& scene, RenderOptions options, const char* spp);
 
 /// A picture that must be black; where it is not is noted.

@@ -91,9 +91,7 @@ void addLeakCases(Cases& cases) {
                      .name = "a lit room, " + walls,
                      .answer = "the path tracer's mean: no darkening over 2 %",
                      .run = [wall](Bench& bench, Row& row) {
-                       if (!bench.hasGraph("reference")) {
-                         row.shown = true;
-                         row.note = "this build has no path tracer to know the answer from";
+                       if (!canTrace(bench, row)) {
                          bench.render(sealedRoom(wall, 0, false), inside());
                          return;
                        }

@@ -69,9 +69,7 @@ scene::Scene makeCorridor() {
 /// The path tracer's own noise is within `tolerance`.
 void runAgainstPathTracer(Bench& bench, Row& row, const scene::Scene& scene, const RenderOptions& options, const char* spp,
                           double tolerance) {
-  if (!bench.hasGraph("reference")) {
-    row.shown = true;
-    row.note = "this build has no path tracer to know the answer from";
+  if (!canTrace(bench, row)) {
     bench.render(scene, options);
     return;
   }
@@ -92,6 +90,13 @@ RenderOptions coarse(uint32_t resolution) {
                       {"gather_pixels.rays", "16"},
                       {"path_trace.spp", "64"}};
   return options;
+}
+
+bool canTrace(const Bench& bench, Row& row) {
+  if (bench.hasGraph("reference")) return true;
+  row.shown = true;
+  row.note = "this build has no path tracer to know the answer from";
+  return false;
 }
 
 double traceMean(Bench& bench, const scene::Scene& scene, RenderOptions options, const char* spp) {

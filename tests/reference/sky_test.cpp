@@ -48,6 +48,14 @@ class Sky : public oracles::GpuTest {
                 q.indirect.psnr, q.indirect.bias);
     return q;
   }
+  void expectAgrees(const scene::Scene& scene, const char* what) {
+    const reference::Images truth = traceTruth(scene);
+    for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
+      const Quality q = measure(scene, truth, graph, what);
+      EXPECT_NEAR(q.direct.bias, 1, 0.02) << graph;
+      EXPECT_NEAR(q.indirect.bias, 1, 0.03) << graph;
+    }
+  }
   reference::Images traceTruth(const scene::Scene& scene) {
     return reference::PathTracer(scene).render(scene.cameras.front(), {.width = kWidth, .height = kHeight, .spp = 256});
   }
@@ -70,12 +78,7 @@ scene::Scene courtUnder(const glm::vec3& radiance) {
 
 TEST_F(Sky, SlowAnEvenSkyBouncesAsThePathTracerSays) {
   const scene::Scene scene = courtUnder({0.6f, 0.8f, 1.f});
-  const reference::Images truth = traceTruth(scene);
-  for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
-    const Quality q = measure(scene, truth, graph, "even sky");
-    EXPECT_NEAR(q.direct.bias, 1, 0.02);
-    EXPECT_NEAR(q.indirect.bias, 1, 0.03);
-  }
+  expectAgrees(scene, "even sky");
 }
 
 // Direct light alone has the sky's, too.
@@ -229,24 +232,14 @@ TEST_F(Sky, SlowAnImageBouncesAsThePathTracerSays) {
     return glm::vec3(0.2 + 3 * spot, 0.4 + 2 * spot, 0.7 + 0.5 * d.y + spot);
   });
   EXPECT_TRUE(scene.sky->suns.empty());
-  const reference::Images truth = traceTruth(scene);
-  for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
-    const Quality q = measure(scene, truth, graph, "painted sky");
-    EXPECT_NEAR(q.direct.bias, 1, 0.02);
-    EXPECT_NEAR(q.indirect.bias, 1, 0.03);
-  }
+  expectAgrees(scene, "painted sky");
 }
 
 TEST_F(Sky, SlowASunOfTheImageIsALight) {
   scene::Scene scene = courtUnder(glm::vec3(0.f));
   scene.sky = scene::loadSky("builtin:clear");
   ASSERT_EQ(scene.sky->suns.size(), 1u);
-  const reference::Images truth = traceTruth(scene);
-  for (const char* graph : {"clustered_voxel", "clustered_voxel_pixels"}) {
-    const Quality q = measure(scene, truth, graph, "clear sky");
-    EXPECT_NEAR(q.direct.bias, 1, 0.02);
-    EXPECT_NEAR(q.indirect.bias, 1, 0.03);
-  }
+  expectAgrees(scene, "clear sky");
 }
 
 // Turned a quarter, the light of each side of a block is that of the next.

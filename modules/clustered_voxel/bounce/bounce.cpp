@@ -61,28 +61,18 @@ void Bounce::declare(graph::Declaration& d) {
   const bool emits = d.traits.hasEmissionByRays();
   const bool needsMatrix = bounces > 1 || emits || d.traits.keeps(scene::Feature::Matrix);
   for (const char* name : {"row_start", "entries", "sky"}) {
-    graph::Port& port = d.read(name, "form factors between clusters");
-    port.optional = port.unwanted = !needsMatrix;
-    port.unwantedReason = "one bounce needs no light between clusters";
+    d.readIf(needsMatrix, name, "form factors between clusters", "one bounce needs no light between clusters").optional = !needsMatrix;
   }
   const bool needsRows = bounces > 1 && last_ == Last::Faces;
-  for (const char* name : {"visibility_row_start", "visibility_entries", "chunk_table"}) {
-    graph::Port& port = d.read(name, "rows of the faces");
-    port.optional = true;
-    port.unwanted = !needsRows;
-    port.unwantedReason = bounces > 1 ? "bounce.last=clusters" : "one bounce needs no light between clusters";
-  }
+  for (const char* name : {"visibility_row_start", "visibility_entries", "chunk_table"})
+    d.readIf(needsRows, name, "rows of the faces", bounces > 1 ? "bounce.last=clusters" : "one bounce needs no light between clusters");
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("labels", "cluster id of each face");
   d.read("faces", "Face");
-  graph::Port& emission = d.read("emission", "mean B_e of each face, W/m²");
-  emission.optional = emission.unwanted = !emits;
-  emission.unwantedReason = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
-  graph::Port& weights = d.read("weights", "how much of each face others see, for the mean of emission");
-  weights.optional = true;
-  weights.unwanted = emission.unwanted;
-  weights.unwantedReason = emission.unwantedReason;
+  const char* noEmission = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
+  d.readIf(emits, "emission", "mean B_e of each face, W/m²", noEmission).optional = !emits;
+  d.readIf(emits, "weights", "how much of each face others see, for the mean of emission", noEmission);
   d.read("face_irradiance", "E_dir of each face, W/m²");
   d.read("direct_radiosity", "reflected direct light of each cluster, W/m²", graph::UseCompute | graph::UseTransfer);
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");

@@ -24,10 +24,7 @@ void Filter::declare(graph::Declaration& d) {
   d.read("needed", "bit per face: shown, or within the filter's reach");
   declareStructure(d);
   d.read("gathered", "E_indirect of each face, W/m²; a: sky visibility");
-  graph::Port& sky = d.read("gathered_sky", "E_sky of each face, W/m²");
-  sky.optional = true;
-  sky.unwanted = !d.traits.skyImage;
-  sky.unwantedReason = "the sky has no image";
+  readUnderImage(d, "gathered_sky", "E_sky of each face, W/m²");
   readSkyImage(d);  // only its version: the sky changed
   graph::Port& filteredSky = d.write("sky", Shape::buffer(16, Extent::of("faces")), "E_sky, W/m², filtered, of a sky with an image");
   filteredSky.persistent = true;

@@ -32,10 +32,7 @@ void Gather::declare(graph::Declaration& d) {
   d.read("face_radiosity", "reflected radiosity, W/m²");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m²; a: sky visibility").persistent = true;
   readSkyImage(d);
-  graph::Port& info = d.read("scene.info", "sky radiance");
-  info.optional = true;
-  info.unwanted = !d.traits.skyImage;
-  info.unwantedReason = "the sky has no image";
+  readUnderImage(d, "scene.info", "sky radiance");
   graph::Port& sky = d.write("sky", Shape::buffer(16, Extent::of("faces")), "E_sky, W/m², of a sky with an image");
   sky.persistent = true;
   sky.optional = true;

@@ -58,37 +58,31 @@ void GatherPixels::declare(graph::Declaration& d) {
   // Emitters shine from many samples: too many to look up one by one.
   const bool shadow = near_ > 0.f && shadow_ && d.traits.emissiveTriangleCount == 0 && d.traits.punctualLightCount() > 0;
   const bool masked = near_ > 0.f && d.traits.alphaMasked;
-  const auto readNear = [&d](const char* name, const char* meaning, bool wanted, const char* reason) {
-    graph::Port& port = d.read(name, meaning);
-    port.optional = true;
-    port.unwanted = !wanted;
-    port.unwantedReason = reason;
-  };
   constexpr const char* kNoTriangles = "gather_pixels.near is 0: rays test no triangles";
   d.read("triangle", "id + 1 of the pixel's triangle");
-  readNear("triangle_first", "first triangle of each voxel", near_ > 0.f, kNoTriangles);
-  readNear("triangle_ids", "triangles of each voxel", near_ > 0.f, kNoTriangles);
-  readNear("corners", "corners of triangles", near_ > 0.f && d.traits.triangleCount <= shared::kMostCornerTriangles,
+  d.readIf(near_ > 0.f, "triangle_first", "first triangle of each voxel", kNoTriangles);
+  d.readIf(near_ > 0.f, "triangle_ids", "triangles of each voxel", kNoTriangles);
+  d.readIf(near_ > 0.f && d.traits.triangleCount <= shared::kMostCornerTriangles, "corners", "corners of triangles",
            "gather_pixels.near is 0, or there are too many triangles for an image");
-  readNear("scene.vertices", "Vertex", near_ > 0.f, kNoTriangles);
-  readNear("scene.indices", "three a triangle", near_ > 0.f, kNoTriangles);
+  d.readIf(near_ > 0.f, "scene.vertices", "Vertex", kNoTriangles);
+  d.readIf(near_ > 0.f, "scene.indices", "three a triangle", kNoTriangles);
   constexpr const char* kNoShadow =
       "gather_pixels.near and shadow are off, or emitters light the scene: hits take their face's direct light";
-  readNear("shadow_depth", "depth of the nearest surface from each light", shadow, kNoShadow);
-  readNear("shadow_triangle", "its id + 1", shadow, kNoShadow);
-  readNear("face_irradiance", "E_dir of each face, W/m²", shadow, kNoShadow);
-  readNear("scene.lights", "Light", shadow, kNoShadow);
-  readNear("scene.shadow_views", "ShadowView", shadow, kNoShadow);
-  readNear("scene.triangle_materials", "one a triangle", masked || shadow, "no near triangle has an alpha mask");
-  readNear("scene.materials", "Material", masked || shadow, "no near triangle has an alpha mask");
-  readNear("scene.textures", "Texture", masked, "no near triangle has an alpha mask");
+  d.readIf(shadow, "shadow_depth", "depth of the nearest surface from each light", kNoShadow);
+  d.readIf(shadow, "shadow_triangle", "its id + 1", kNoShadow);
+  d.readIf(shadow, "face_irradiance", "E_dir of each face, W/m²", kNoShadow);
+  d.readIf(shadow, "scene.lights", "Light", kNoShadow);
+  d.readIf(shadow, "scene.shadow_views", "ShadowView", kNoShadow);
+  d.readIf(masked || shadow, "scene.triangle_materials", "one a triangle", "no near triangle has an alpha mask");
+  d.readIf(masked || shadow, "scene.materials", "Material", "no near triangle has an alpha mask");
+  d.readIf(masked, "scene.textures", "Texture", "no near triangle has an alpha mask");
   if (graph::Port& sky = readSky(d); !shadow) {
     sky.unwanted = true;
     sky.unwantedReason = kNoShadow;
   }
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   readSkyImage(d);
-  readNear("scene.info", "sky radiance", d.traits.skyImage, "the sky has no image");
+  readUnderImage(d, "scene.info", "sky radiance");
   d.write("sky", image, "E_sky, W/m², of a sky with an image; 0 on the sky").optional = true;
   if (d.traits.skyImage) {
     d.scratch("raw_sky", image, "E_sky from each pixel's own rays");

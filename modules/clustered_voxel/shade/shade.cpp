@@ -1,5 +1,6 @@
 #include "modules/clustered_voxel/shade/shade.h"
 
+#include "modules/clustered_voxel/sky/sky.h"
 #include "modules/clustered_voxel/structure.h"
 
 namespace radivox::clustered_voxel {
@@ -20,10 +21,7 @@ void Shade::declare(graph::Declaration& d) {
   d.read("valid", "bit per face");
   d.write("irradiance", Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height")),
           "E_indirect, W/m²; a: sky visibility; 0 on the sky");
-  graph::Port& sky = d.read("filtered_sky", "E_sky of each face, W/m²");
-  sky.optional = true;
-  sky.unwanted = !d.traits.skyImage;
-  sky.unwantedReason = "the sky has no image";
+  readUnderImage(d, "filtered_sky", "E_sky of each face, W/m²");
   d.write("sky", Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height")),
           "E_sky, W/m², of a sky with an image; 0 on the sky")
       .optional = true;

@@ -8,20 +8,18 @@ using graph::Extent;
 using graph::Shape;
 
 graph::Port& readSky(graph::Declaration& d) {
-  graph::Port& port = d.read("sky_irradiance", "E_sky of each face, W/m²");
-  port.optional = true;
   const char* nothingBounces = d.traits.whyNothingBounces();
   const bool bounces = (d.request.wantsIndirect() && nothingBounces == nullptr) || d.traits.keeps(scene::Feature::Bounces);
-  port.unwanted = !d.traits.hasSky() || !bounces;
-  port.unwantedReason = !d.traits.hasSky() ? "the scene has no sky" : nothingBounces != nullptr ? nothingBounces : "0 bounces asked for";
-  return port;
+  return d.readIf(d.traits.hasSky() && bounces, "sky_irradiance", "E_sky of each face, W/m²",
+                  !d.traits.hasSky()          ? "the scene has no sky"
+                  : nothingBounces != nullptr ? nothingBounces
+                                              : "0 bounces asked for");
 }
 
-void readSkyImage(graph::Declaration& d) {
-  graph::Port& port = d.read("scene.sky", "the sky's image: means over bins and cells, texels");
-  port.optional = true;
-  port.unwanted = !d.traits.skyImage;
-  port.unwantedReason = "the sky has no image";
+void readSkyImage(graph::Declaration& d) { readUnderImage(d, "scene.sky", "the sky's image: means over bins and cells, texels"); }
+
+void readUnderImage(graph::Declaration& d, const char* name, const char* meaning) {
+  d.readIf(d.traits.skyImage, name, meaning, "the sky has no image");
 }
 
 void Sky::declare(graph::Declaration& d) {

@@ -30,7 +30,8 @@ class Sky : public graph::Node {
 
 /// Declares a read of the sky's light on faces, which is unwanted where the sky lights nothing that is passed on.
 graph::Port& readSky(graph::Declaration& d);
-/// Declares a read of scene.sky, which is unwanted where the sky has no image.
+/// Declares a read that is unwanted where the sky has no image; readSkyImage: of scene.sky.
+void readUnderImage(graph::Declaration& d, const char* name, const char* meaning);
 void readSkyImage(graph::Declaration& d);
 
 }  // namespace radivox::clustered_voxel

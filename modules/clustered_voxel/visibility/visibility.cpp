@@ -75,10 +75,8 @@ void Visibility::declare(graph::Declaration& d) {
                            "scene.materials", "scene.textures"})
     leaveOut(d.read(name, "triangles of each voxel"));
   leaveOut(d.modify("pieces", "where rays start on the triangles of each voxel; freed once all are traced"));
-  graph::Port& corners = d.read("corners", "corners of triangles");
-  corners.optional = true;
-  corners.unwanted = triangles_ == 0.f || d.traits.triangleCount > shared::kMostCornerTriangles;
-  corners.unwantedReason = "visibility.triangles=0, or there are too many triangles for an image";
+  d.readIf(triangles_ > 0.f && d.traits.triangleCount <= shared::kMostCornerTriangles, "corners", "corners of triangles",
+           "visibility.triangles=0, or there are too many triangles for an image");
   const Extent faces = Extent::of("faces");
   d.write("row_start", Shape::buffer(4, faces * (kRowsPerChunk + 1) / kRowsPerChunk + (kRowsPerChunk + 1)),
           "first bit of each row within its chunk");
