@@ -46,6 +46,19 @@ void dropUnusedVertices(Scene& scene) {
   for (uint32_t& i : scene.indices) i = newIndex[i];
 }
 
+/// What is left of each object once unused vertices are dropped; those without any are no more.
+void countObjectVertices(std::vector<Object>& objects, const std::vector<uint32_t>& indices, size_t vertexCount) {
+  std::vector<uint32_t> keptBefore(vertexCount + 1, 0u);
+  for (const uint32_t i : indices) keptBefore[i + 1] = 1u;
+  for (size_t i = 0; i < vertexCount; ++i) keptBefore[i + 1] += keptBefore[i];
+  for (Object& object : objects) {
+    const uint32_t first = keptBefore[object.firstVertex];
+    object.vertexCount = keptBefore[object.firstVertex + object.vertexCount] - first;
+    object.firstVertex = first;
+  }
+  std::erase_if(objects, [](const Object& object) { return object.vertexCount == 0; });
+}
+
 }  // namespace
 
 void finishGeometry(Assembly&& assembly, Scene& scene) {
@@ -78,7 +91,33 @@ void finishGeometry(Assembly&& assembly, Scene& scene) {
     scene.triangleMaterials.push_back(assembly.triangleMaterials[t]);
   }
   if (dropped > 0) scene.warnings.push_back(std::to_string(dropped) + " triangles without area are left out");
+  scene.objects = std::move(assembly.objects);
+  countObjectVertices(scene.objects, scene.indices, scene.vertices.size());
   dropUnusedVertices(scene);
+}
+
+void moveVertices(Scene& scene, uint32_t first, uint32_t count, const glm::mat4& by) {
+  if (size_t{first} + count > scene.vertices.size())
+    throw Error(ErrorCode::BadInput, scene.name + ": vertices " + std::to_string(first) + " to " + std::to_string(size_t{first} + count) +
+                                         " of " + std::to_string(scene.vertices.size()) + " cannot be moved");
+  const glm::dmat4 affine(by);
+  const glm::dmat3 linear(affine);
+  const glm::dmat3 normals(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+  const double volume = glm::dot(linear[0], normals[0]);
+  if (!(volume > 0) || !std::isfinite(volume))
+    throw Error(ErrorCode::BadInput,
+                scene.name + ": a move must neither mirror nor flatten, and its determinant is " + std::to_string(volume));
+  const auto isFine = [](const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  std::vector<shared::Vertex> moved(scene.vertices.begin() + first, scene.vertices.begin() + first + count);
+  for (shared::Vertex& vertex : moved) {
+    vertex.position = glm::vec3(affine * glm::dvec4(glm::dvec3(vertex.position), 1.0));
+    const glm::dvec3 n = normals * glm::dvec3(vertex.normal);
+    const double length = glm::length(n);
+    if (length > 0) vertex.normal = glm::vec3(n / length);
+    if (!isFine(vertex.position) || !isFine(vertex.normal))
+      throw Error(ErrorCode::BadInput, scene.name + ": the move leads beyond what floats can hold");
+  }
+  std::copy(moved.begin(), moved.end(), scene.vertices.begin() + first);
 }
 
 glm::dvec3 areaVector(const Scene& scene, size_t triangle) {

@@ -10,6 +10,7 @@ struct Assembly {
   std::vector<shared::Vertex> vertices;  ///< one a position; Vertex::position is set by finishGeometry
   std::vector<uint32_t> indices;
   std::vector<uint32_t> triangleMaterials;
+  std::vector<Object> objects;
 };
 
 /// Chooses Scene::origin, rounds positions to float, drops triangles without area (with a warning) and vertices that nothing uses.

@@ -344,8 +344,14 @@ Scene importChecked(const std::string& path) {
     const tinygltf::Node& node = model.nodes[placedNode.node];
     if (node.mesh >= 0) {
       const auto& joints = node.skin < 0 ? noJoints : skins[static_cast<size_t>(node.skin)];
-      for (const gltf::Primitive& primitive : meshes.mesh(node))
-        gltf::appendInstance(document, primitive, placedNode.toWorld, joints, placeOf("nodes", placedNode.node), assembly, warnings);
+      const std::string place = placeOf("nodes", placedNode.node);
+      const std::string name = firstName(node.name, model.meshes[static_cast<size_t>(node.mesh)].name, place);
+      size_t part = 0;
+      for (const gltf::Primitive& primitive : meshes.mesh(node)) {
+        gltf::appendInstance(document, primitive, placedNode.toWorld, joints, place, part == 0 ? name : name + "." + std::to_string(part),
+                             assembly, warnings);
+        ++part;
+      }
     }
     if (const auto* extension = gltf::findExtension(node.extensions, "KHR_lights_punctual")) {
       const auto index = static_cast<size_t>(extension->Get("light").GetNumberAsInt());

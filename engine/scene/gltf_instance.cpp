@@ -40,7 +40,7 @@ std::vector<glm::dmat4> vertexTransforms(const Document& document, const Primiti
 }  // namespace
 
 void appendInstance(const Document& document, const Primitive& primitive, const glm::dmat4& toWorld, const std::vector<glm::dmat4>& joints,
-                    const std::string& place, Assembly& assembly, Warnings& warnings) {
+                    const std::string& place, const std::string& name, Assembly& assembly, Warnings& warnings) {
   if (primitive.indices.empty()) return;
   const std::vector<glm::dmat4> transforms = vertexTransforms(document, primitive, toWorld, joints);
   const auto transformOf = [&](size_t vertex) -> const glm::dmat4& { return transforms[transforms.size() == 1 ? 0 : vertex]; };
@@ -74,6 +74,8 @@ void appendInstance(const Document& document, const Primitive& primitive, const 
     return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0, 1, 0);
   };
   const auto first = static_cast<uint32_t>(assembly.positions.size());
+  const auto vertices = static_cast<uint32_t>(primitive.normals.empty() ? indices.size() : vertexCount);
+  assembly.objects.push_back({name, first, vertices});
   assembly.triangleMaterials.insert(assembly.triangleMaterials.end(), primitive.materials.begin(), primitive.materials.end());
 
   if (primitive.normals.empty()) {  // flat: every triangle its own three vertices

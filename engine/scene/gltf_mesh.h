@@ -53,8 +53,8 @@ class MeshReader {
 
 /// Adds the primitive's triangles, transformed: by `joints` (to world, one a joint) where it has influences and they are given, else by
 /// `toWorld`. Winding follows the determinant's sign, so that fronts stay fronts; missing and unusable normals are replaced by geometric
-/// ones. Throws BadInput naming `place` when a position leaves the range of floats.
+/// ones. The object is called `name`. Throws BadInput naming `place` when a position leaves the range of floats.
 void appendInstance(const Document& document, const Primitive& primitive, const glm::dmat4& toWorld, const std::vector<glm::dmat4>& joints,
-                    const std::string& place, Assembly& assembly, Warnings& warnings);
+                    const std::string& place, const std::string& name, Assembly& assembly, Warnings& warnings);
 
 }  // namespace radivox::scene::gltf

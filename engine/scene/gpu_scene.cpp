@@ -165,6 +165,19 @@ void GpuScene::uploadSky(const Scene& scene) {
   ++skyVersion_;
 }
 
+void GpuScene::setGeometry(const Scene& scene) {
+  if (scene.vertices.size() != counts_["vertices"] || scene.triangleCount() != counts_["triangles"]) {
+    throw Error(ErrorCode::BadInput, scene.name + ": it has " + std::to_string(scene.vertices.size()) + " vertices and " +
+                                         std::to_string(scene.triangleCount()) + " triangles where there were " +
+                                         std::to_string(counts_["vertices"]) + " and " + std::to_string(counts_["triangles"]) +
+                                         "; only moved ones can be set: make another GpuScene");
+  }
+  vertices_ = makeBuffer(device_, "scene.vertices", scene.vertices);
+  ++vertexVersion_;
+  emissive_ = {};
+  setLights(scene);
+}
+
 void GpuScene::setLights(const Scene& scene) {
   const LightSetup setup = setUpLights(scene, options_);
   const Traits traits = scene.traits();
@@ -207,12 +220,12 @@ void GpuScene::setCamera(const CameraDescription& camera, uint32_t width, uint32
 }
 
 void GpuScene::importInto(graph::Executor& executor) const {
-  executor.importBuffer("scene.vertices", vertices_, geometryVersion_);
+  executor.importBuffer("scene.vertices", vertices_, vertexVersion_);
   executor.importBuffer("scene.indices", indices_, geometryVersion_);
   executor.importBuffer("scene.triangle_materials", triangleMaterials_, geometryVersion_);
   executor.importBuffer("scene.materials", materials_, geometryVersion_);
   executor.importBuffer("scene.textures", textureTable_, geometryVersion_);
-  executor.importBuffer("scene.emissive_triangles", emissive_, geometryVersion_);
+  executor.importBuffer("scene.emissive_triangles", emissive_, vertexVersion_);
   executor.importBuffer("scene.info", info_, lightVersion_);
   executor.importBuffer("scene.lights", lights_, lightVersion_);
   executor.importBuffer("scene.shadow_views", shadowViews_, lightVersion_);

@@ -37,8 +37,14 @@ class GpuScene {
   /// Lights and sky of `scene`: new versions of scene.info, .lights, .shadow_views; of scene.sky where it is another. Geometry keeps its version. Counts of lights and
   /// shadow layers may change, and with them a plan's shapes.
   void setLights(const Scene& scene);
+  /// Vertices of `scene`, which has as many vertices and triangles as the one before, in the same order, and its lights. Where the bounds or another
+  /// trait change (Scene::traits), the plan does not fit any more: compile again. Throws BadInput for other counts.
+  void setGeometry(const Scene& scene);
   /// A new version of the geometry, which is the same: everything that depends on it runs again. For measuring what that costs.
-  void touchGeometry() { ++geometryVersion_; }
+  void touchGeometry() {
+    ++geometryVersion_;
+    ++vertexVersion_;
+  }
   void setCamera(const CameraDescription& camera, uint32_t width, uint32_t height);
   void importInto(graph::Executor& executor) const;
 
@@ -58,7 +64,7 @@ class GpuScene {
   std::vector<gpu::Buffer> texels_;
   gpu::Buffer sky_;
   std::shared_ptr<const Sky> uploadedSky_;
-  uint64_t geometryVersion_ = 1, lightVersion_ = 1, cameraVersion_ = 1, skyVersion_ = 1;
+  uint64_t geometryVersion_ = 1, vertexVersion_ = 1, lightVersion_ = 1, cameraVersion_ = 1, skyVersion_ = 1;
   graph::Counts counts_;
   std::vector<std::string> notes_;
 };

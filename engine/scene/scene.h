@@ -44,6 +44,12 @@ struct CameraDescription {
   float zfar = 1e3f;    ///< m; orthographic only (perspective ends nowhere)
 };
 
+/// What can be moved by itself: an instance of a mesh primitive. Its triangles use its own vertices and no others.
+struct Object {
+  std::string name;  ///< of the glTF node, or of its mesh; "node.1" for a second primitive
+  uint32_t firstVertex = 0, vertexCount = 0;
+};
+
 struct Sky;  // engine/scene/sky.h
 
 struct Scene {
@@ -52,6 +58,7 @@ struct Scene {
   std::vector<shared::Vertex> vertices;
   std::vector<uint32_t> indices;            ///< 3 a triangle, < vertices.size()
   std::vector<uint32_t> triangleMaterials;  ///< one a triangle
+  std::vector<Object> objects;              ///< in the order of their vertices; built-in scenes have none
   std::vector<shared::Material> materials;  ///< at least one
   std::vector<std::string> materialNames;
   std::vector<TextureImage> textures;
@@ -70,6 +77,10 @@ struct Scene {
 Scene loadScene(const std::string& scene, const std::string& sky = "");
 /// Warning of importGltf.
 constexpr const char* kNoLightWarning = "the scene has no light: no lights, no emissive surface, no sky";
+
+/// Moves vertices [first, first + count) by an affine map of positions relative to Scene::origin; normals follow. GpuScene::setGeometry brings it to the
+/// device. Throws BadInput where `by` mirrors, flattens or is not finite, and nothing is moved then.
+void moveVertices(Scene& scene, uint32_t first, uint32_t count, const glm::mat4& by);
 
 /// By name or index; throws BadInput with the names there are.
 const CameraDescription& findCamera(const Scene& scene, const std::string& nameOrIndex);

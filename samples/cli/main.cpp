@@ -291,6 +291,16 @@ int run(int argc, char** argv) {
   needs->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
   needs->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
   needs->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  std::string shares = "1,10,50";
+  CLI::App* moves =
+      app.add_subcommand("moves", "what a picture costs after part of the scene has moved, beside one from scratch, as a table");
+  addSceneOptions(moves, options);
+  moves->add_option("--shares", shares, "triangles that move, percent (default: 1,10,50)")->type_name("N,N");
+  addGraphOption(moves, options, kPictureGraph, false);
+  addRepeated(moves, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
+  moves->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
+  moves->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
+  moves->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
   BenchOptions benchOptions;
   CLI::App* bench = app.add_subcommand("bench", "speed of voxel rays beside Embree's closest hits of the same rays, and how they agree");
   addBenchOptions(bench, options, benchOptions);
@@ -303,9 +313,9 @@ int run(int argc, char** argv) {
   CLI::App* nodes = app.add_subcommand("nodes", "every node as it describes itself: ports and parameters");
   addRepeated(nodes, "--module", options.modules, "a library with more nodes; may be repeated", "FILE.so");
   nodes->add_option("--format", options.format, "text (default) or markdown, all of it: docs/nodes.md")->type_name("NAME");
-  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "view", "stability", "vdb",
-                                                 "graph",  "needs",     "bench",   "scene",  "info", "nodes"};
-  for (CLI::App* command : {render, reference, compare, report, view, stability, vdb, graph, needs, bench, scene, info, nodes})
+  const std::vector<std::string> commandNames = {"render", "reference", "compare", "report", "view",  "stability", "vdb",
+                                                 "graph",  "needs",     "moves",   "bench",  "scene", "info",      "nodes"};
+  for (CLI::App* command : {render, reference, compare, report, view, stability, vdb, graph, needs, moves, bench, scene, info, nodes})
     command->allow_extras();
 
   try {
@@ -319,10 +329,11 @@ int run(int argc, char** argv) {
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty() && extras.front().rfind("-", 0) != 0) failUnknown("command", extras.front(), commandNames);
     refuseExtras(app, "");
-    throw Error(ErrorCode::BadInput,
-                "a command is missing; give render, reference, compare, report, view, stability, vdb, graph, needs, bench, scene, info or "
-                "nodes, or see "
-                "`radivox --help`");
+    throw Error(
+        ErrorCode::BadInput,
+        "a command is missing; give render, reference, compare, report, view, stability, vdb, graph, needs, moves, bench, scene, info or "
+        "nodes, or see "
+        "`radivox --help`");
   }
   const CLI::App* command = app.get_subcommands().front();
   refuseExtras(app, "");
@@ -343,6 +354,7 @@ int run(int argc, char** argv) {
     throw Error(ErrorCode::BadInput,
                 "NAME is missing; give a built-in scene of `radivox info`, as in `radivox scene cornell --out cornell.glb`");
   }
+  if (command == moves && !options.scene.empty()) return runMoves(options, shares);
   if (command == bench) {
     if (options.scene.empty()) options.scene = "builtin:atrium";
     return runBench(options, benchOptions);

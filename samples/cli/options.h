@@ -89,6 +89,8 @@ int runVdb(const Options& options, const VdbOptions& vdb);
 int runGraph(const Options& options);
 /// A table of what leaving out saves; `options` without a scene.
 int runNeeds(const Options& options, const std::vector<std::string>& scenes, const std::string& runs);
+/// What pictures cost after shares of the scene have moved: percents, comma-separated.
+int runMoves(const Options& options, const std::string& shares);
 /// Speed of voxel rays beside Embree.
 int runBench(const Options& options, const BenchOptions& bench);
 int runScene(const Options& options);

@@ -41,7 +41,9 @@ void main() {
   uint ray = min(radivoxItemIndex(), rayCount - 1u);
   bool idle = radivoxItemIndex() >= rayCount;
   Face face = faces[faceId];
-  uvec3 coordinate = voxelCoordinate(face.key >> 3);
+  uint packed = voxels[face.key >> 3];
+  uvec3 coordinate = unpackVoxel(packed);
+  uint seed = faceSeed(packed, face.key & 7u);
   vec3 position = facePosition(face, coordinate);
   vec3 n = decodeNormal(face.normal);
   vec3 origin = liftedOrigin(position, n);
@@ -58,7 +60,7 @@ void main() {
   } else {
     start = ivec3(coordinate);
   }
-  TraversalRay way = makeTraversalRay(origin, alongNormal(decodeDirection(directions[shiftOf(faceId) * rayCount + ray]), n));
+  TraversalRay way = makeTraversalRay(origin, alongNormal(decodeDirection(directions[shiftOf(seed) * rayCount + ray]), n));
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   uint inFront = 0u;
   bool fresh = true;
@@ -71,7 +73,7 @@ void main() {
     if (busy && !stay) cursor = stepped;
     bool atStart = fresh && crowded;
     if (castMarch(way, cursor, busy && !atStart)) inFront = 0u;
-    uint found = castFace(way, cursor, busy, atStart ? excluded : 0u, inFront, rayRandom(faceId, ray));
+    uint found = castFace(way, cursor, busy, atStart ? excluded : 0u, inFront, rayRandom(seed, ray));
     fresh = false;
     if (busy) hit = found;
     busy = busy && !isOutside(cursor.voxel) && found == kHitNothing;

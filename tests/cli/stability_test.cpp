@@ -49,14 +49,14 @@ class Stability : public CommandTest {
   }
 };
 
-TEST_F(Stability, AStiffFurnaceIsExact) {
+TEST_F(Stability, SlowAStiffFurnaceIsExact) {
   const auto all = runCases({"--method", "clustered_voxel", "--case", "faces: furnace, albedo 0.99"});
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all.at("furnace, albedo 0.99"), "pass");
   EXPECT_EQ(all.at("furnace, albedo 0.999"), "pass");
 }
 
-TEST_F(Stability, TooManyLampsAreRefused) {
+TEST_F(Stability, SlowTooManyLampsAreRefused) {
   const auto all = runCases({"--method", "clustered_voxel", "--case", "1e5 lamps"});
   EXPECT_EQ(all.at("1e5 lamps"), "refused");
   EXPECT_NE(read("out/stability.csv").find("of them fit"), std::string::npos);

@@ -45,7 +45,7 @@ TEST_F(Sturdy, SlowADiskThatIsFullLeavesNoHalfFile) {
 #endif
 }
 
-TEST_F(Sturdy, StatisticsThatDoNotFitAreAnErrorAndThePictureStays) {
+TEST_F(Sturdy, SlowStatisticsThatDoNotFitAreAnErrorAndThePictureStays) {
   const CommandResult result =
       runRadivox(render("a.png", {"--stats", path("a.json")}), {.environment = {{"RADIVOX_PIPELINE_CACHE", ""}}, .largestFile = 4096});
   EXPECT_EQ(result.exitCode, 2) << result.err;
@@ -54,14 +54,14 @@ TEST_F(Sturdy, StatisticsThatDoNotFitAreAnErrorAndThePictureStays) {
   EXPECT_GT(image::readPng(path("a.png")).width, 0u);
 }
 
-TEST_F(Sturdy, ACacheThatDoesNotFitIsNoError) {
+TEST_F(Sturdy, SlowACacheThatDoesNotFitIsNoError) {
   const CommandResult result =
       runRadivox(render("a.png"), {.environment = {{"RADIVOX_PIPELINE_CACHE", path("cache")}}, .largestFile = 4096});
   EXPECT_EQ(result.exitCode, 0) << result.err;
   for (const std::string& name : files()) EXPECT_TRUE(name == "a.png" || name == "cache") << name;
 }
 
-TEST_F(Sturdy, TheStabilityTableOnAFullDisk) {
+TEST_F(Sturdy, SlowTheStabilityTableOnAFullDisk) {
   const CommandResult result =
       runRadivox({"stability", "--out", path("out"), "--method", "clustered_voxel", "--case", "all triangles in one voxel"},
                  {.environment = {{"RADIVOX_PIPELINE_CACHE", ""}}, .largestFile = 64});

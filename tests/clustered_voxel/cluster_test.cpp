@@ -122,7 +122,7 @@ TEST_F(ClusterTest, SlowRubbleEqualsOracle) {
   EXPECT_GT(out.figures.at("merged"), 0);
 }
 
-TEST_F(ClusterTest, EveryParameterEqualsOracle) {
+TEST_F(ClusterTest, SlowEveryParameterEqualsOracle) {
   const VoxelStructures s = rubble(60, 24, 2);
   check(s, {.spacing = 7, .angleDegrees = 20.f});
   check(s, {.spacing = 2, .angleDegrees = 44.f, .merge = 0});
@@ -185,7 +185,7 @@ TEST_F(ClusterTest, TouchedVoxelsWithoutFacesJoinNothing) {
   check(s, {});
 }
 
-TEST_F(ClusterTest, MembersAreListedAndDescribed) {
+TEST_F(ClusterTest, SlowMembersAreListedAndDescribed) {
   const VoxelStructures s = rubble(200, 32, 4);
   // Clusters of very different sizes: the paper's distance lets some grow far.
   const Output out = cluster(s, {.spacing = 12, .spaceWeight = 0.f});

@@ -186,7 +186,7 @@ TEST_F(VisibilityQualityTest, ThinWallsPartRooms) {
   }
 }
 
-TEST_F(VisibilityQualityTest, StairsAgreeWithExactRays) {
+TEST_F(VisibilityQualityTest, SlowStairsAgreeWithExactRays) {
   // Convex and concave edges aslant in the grid's voxels; the room has blocks and corners.
   Soup stairs;
   for (int i = 0; i < 5; ++i) {

@@ -24,7 +24,7 @@ TEST_F(VisibilityTest, RowsEqualTheCpuTraversal) {
   for (const uint32_t n : {16u, 32u}) checkRows(device(), buildVoxelStructures(oracle::roomSoup(), n), {.rays = 32});
 }
 
-TEST_F(VisibilityTest, RandomSoupsAndOneSidedSurfaces) {
+TEST_F(VisibilityTest, SlowRandomSoupsAndOneSidedSurfaces) {
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     const bool bothSides = seed % 2 == 0;
     const VoxelStructures s = buildVoxelStructures(oracle::randomSoup(seed, 24), 12 + 5 * seed, bothSides);

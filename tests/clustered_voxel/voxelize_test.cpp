@@ -194,7 +194,7 @@ TEST_F(VoxelizeTest, TrianglesOnBordersAreConservative) {
   expectConservative(borderSoup(), s);
 }
 
-TEST_F(VoxelizeTest, AllMethodsGiveTheSameBits) {
+TEST_F(VoxelizeTest, SlowAllMethodsGiveTheSameBits) {
   const std::vector<std::pair<Soup, uint32_t>> cases{{borderSoup(), 9}, {randomSoup(77, 300), 40}, {randomSoup(78, 300), 256}};
   for (const auto& [soup, resolution] : cases) {
     SCOPED_TRACE(resolution);
@@ -217,7 +217,7 @@ TEST_F(VoxelizeTest, HardwareMethodNamesWhatIsMissing) {
   }
 }
 
-TEST_F(VoxelizeTest, FacesFollowTheDefinition) {
+TEST_F(VoxelizeTest, SlowFacesFollowTheDefinition) {
   for (const uint32_t resolution : {9u, 24u, 70u}) {
     SCOPED_TRACE(resolution);
     Soup soup = randomSoup(11, 120);

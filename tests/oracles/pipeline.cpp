@@ -57,6 +57,11 @@ void Pipeline::setLights(const scene::Scene& lit) {
   gpuScene->importInto(*executor);
 }
 
+void Pipeline::setGeometry(const scene::Scene& moved) {
+  gpuScene->setGeometry(moved);
+  gpuScene->importInto(*executor);
+}
+
 image::Image Pipeline::picture4(const std::string& nodePort) {
   gpu::Image* from = executor->findImage(nodePort);
   if (from == nullptr) throw Error(ErrorCode::BadInput, "no image " + nodePort);

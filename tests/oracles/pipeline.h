@@ -31,6 +31,7 @@ class Pipeline {
   void run();
   void setCamera(const scene::CameraDescription& camera);
   void setLights(const scene::Scene& scene);
+  void setGeometry(const scene::Scene& scene);
 
   template <class T>
   std::vector<T> buffer(const std::string& nodePort) {

@@ -244,13 +244,14 @@ RayResult traceFaceRay(const VoxelStructures& s, const VisibilitySettings& setti
                        uint32_t ray) {
   const uint32_t key = s.faces[face].key;
   const glm::uvec3 coordinate = s.voxelCoordinate(key >> 3);
+  const uint32_t seed = shared::faceSeed(shared::packVoxel(coordinate), key & 7u);
   const vec3 position = s.facePosition(face);
   const vec3 axis = shared::faceVector(key & 7u);
   const vec3 n = settings.axisFrame ? axis : shared::decodeNormal(s.faces[face].normal);
-  const vec3 local = shared::decodeDirection(directions[shared::shiftOf(face) * settings.rays + ray]);
+  const vec3 local = shared::decodeDirection(directions[shared::shiftOf(seed) * settings.rays + ray]);
   vec3 direction = shared::alongNormal(local, n);
   for (int k = 0; k < 3; ++k) direction[k] = std::fabs(direction[k]) < kFlat ? 0.f : direction[k];
-  const uint32_t random = shared::rayRandom(face, ray);
+  const uint32_t random = shared::rayRandom(seed, ray);
   const ivec3 own(coordinate);
   ivec3 start = settings.axisFrame ? own + ivec3(axis) : own;
   RayResult result;

@@ -66,7 +66,7 @@ TEST_F(Render, CameraMoveGathersOnlyNewlyNeededFaces) {
   EXPECT_LT(second, 0.5 * first);
 }
 
-TEST_F(Render, GatherIsTheMeanOfItsRowAndKnowsItsSpread) {
+TEST_F(Render, SlowGatherIsTheMeanOfItsRowAndKnowsItsSpread) {
   PipelineOptions options = small(20);
   options.aovs = {"color", "error"};
   options.outputs = {"composite.color",      "shade.error",        "gather.irradiance",        "gather.error",         "gather.valid",

@@ -400,7 +400,7 @@ TEST_F(ImportTest, WhatIsLeftOutIsSaid) {
   EXPECT_TRUE(hasWarning(s, "animations"));
 }
 
-TEST_F(ImportTest, DeepHierarchiesNeedNoStack) {
+TEST_F(ImportTest, SlowDeepHierarchiesNeedNoStack) {
   TinyGltf file;
   file.addTriangle();
   constexpr size_t kDepth = 200000;

@@ -264,7 +264,7 @@ TEST_F(VdbTest, TheSameSceneGivesTheSameBytesAndAnotherOneAnotherTagSlow) {
   EXPECT_NE(a.getUniqueTag(), c.getUniqueTag()) << "programs compare tags to see whether a file has changed";
 }
 
-TEST_F(VdbTest, OnlyWhatAGridNeedsIsComputed) {
+TEST_F(VdbTest, SlowOnlyWhatAGridNeedsIsComputed) {
   const scene::Scene scene = scene::loadScene("builtin:cornell");
   const VdbRun occupancy(device(), scene, {.file = path("a.vdb"), .grids = "occupancy"});
   for (const char* node : {"faces", "surface", "cluster", "visibility", "inject", "bounce", "gather", "gbuffer", "shadow_map"})
@@ -288,7 +288,7 @@ TEST_F(VdbTest, RaysNeedNoLightAndLightIsTheSameWithAndWithoutThemSlow) {
   EXPECT_EQ(with.buffer<glm::vec3>("inject.face_irradiance", faces), without.buffer<glm::vec3>("inject.face_irradiance", faces));
 }
 
-TEST_F(VdbTest, PlaceNamesClassesAndMetadata) {
+TEST_F(VdbTest, SlowPlaceNamesClassesAndMetadata) {
   scene::Scene scene = scene::loadScene("builtin:cornell");
   scene.origin = {1e6, -2e6, 0.25};
   const VdbRun run(device(), scene, {.file = path("a.vdb"), .grids = "occupancy,mean_normal,cluster_id,direct"});

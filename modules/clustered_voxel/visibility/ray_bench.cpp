@@ -67,15 +67,15 @@ void RayBench::sortRows() {
   const gpu::Buffer& faces = *executor_.findBuffer(node_ + ".faces");
   const gpu::Buffer* lists = executor_.findBuffer(node_ + ".triangle_first");
   const gpu::Pipeline sort(device_, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/sort_rows.comp",
-                                                             .bindings = std::vector<gpu::BindingType>(3, gpu::BindingType::StorageBuffer),
-                                                             .pushConstantBytes = 8,
+                                                             .bindings = std::vector<gpu::BindingType>(4, gpu::BindingType::StorageBuffer),
+                                                             .pushConstantBytes = 12,
                                                              .constants = {{0, lists != nullptr ? 1u : 0u}}});
   device_.submitAndWait([&](VkCommandBuffer handle) {
     gpu::Commands commands(device_, handle, pool_);
     for (size_t i = 0; i < chunks_.size(); ++i) {
       constexpr VkDeviceSize kBytes = kChunkRows * sizeof(uint32_t);
-      commands.bind(sort, {faces, {order_, i * kBytes, kBytes}, lists != nullptr ? *lists : faces});
-      commands.push(std::array{chunks_[i].firstFace, chunks_[i].rows});
+      commands.bind(sort, {faces, {order_, i * kBytes, kBytes}, lists != nullptr ? *lists : faces, faces});
+      commands.push(std::array{chunks_[i].firstFace, chunks_[i].rows, 0u});
       commands.dispatch(1);
     }
   });

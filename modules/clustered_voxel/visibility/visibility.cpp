@@ -18,9 +18,10 @@ using graph::Extent;
 using graph::Shape;
 using shared::kRowsPerChunk;
 
-constexpr size_t kTraceBindings = 22;
+constexpr size_t kTraceBindings = 23, kReuseBindings = 26;
 constexpr size_t kDirectionsBinding = 9;
 constexpr size_t kCornersBinding = 21;
+constexpr uint32_t kTracePushBytes = 24;
 
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
 
@@ -54,7 +55,11 @@ Visibility::Visibility()
            params::swept(
                params::number("near", &near_, {0.0, 4096.0}, "hits up to this distance keep their face instead of its cluster, voxels",
                               params::Invalidates::Rerun),
-               {"0", "4", "8", "16"}, "4096")}) {}
+               {"0", "4", "8", "16"}, "4096"),
+           params::flag(
+               "keep", &keep_,
+               "keep what each ray hit, 4 B a ray: after a move only rays that pass what has changed are traced again, to the same result",
+               params::Invalidates::Plan)}) {}
 
 void Visibility::declare(graph::Declaration& d) {
   d.read("grid", "Grid");
@@ -90,7 +95,8 @@ void Visibility::declare(graph::Declaration& d) {
   d.publishCount("entries", "", 0);
   d.hostPaced();
   const uint64_t rows = kRowsPerChunk;
-  d.scratch("order", Shape::buffer(4, rows), "rows as lanes take them");
+  if (keep_) KeptHits::declare(d, rays_);
+  d.scratch("order", Shape::buffer(4, rows + 1), "rows as lanes take them, and how many of them are traced");
   d.scratch("hits", Shape::buffer(4, rows * rays_), "what each ray of the chunk hit");
   d.scratch("table", Shape::buffer(4, rows << tableBits(rays_)), "hash table a row");
   d.scratch("offsets", Shape::buffer(4, rows + 1), "bits a row, then their exclusive sums");
@@ -108,7 +114,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   scan_ = std::make_unique<gpu::Scan>(device);
   const auto make = [&](std::string_view shader, size_t bindings, uint32_t pushBytes, std::vector<gpu::SpecializationConstant> constants) {
     std::vector<BindingType> types(bindings, kB);
-    if (bindings == kTraceBindings) {
+    if (bindings >= kTraceBindings) {
       types[kDirectionsBinding] = BindingType::UniformBuffer;
       types[kCornersBinding] = BindingType::SampledImage;
     }
@@ -118,29 +124,39 @@ void Visibility::prepare(graph::PrepareContext& context) {
   };
   countPlanes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 1}});
   planes_ = make("clustered_voxel/visibility/planes.comp", 5, 4, {{0, 0}});
-  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 3, 8, {{0, context.has("triangle_ids") ? 1u : 0u}});
+  const uint32_t lists = context.has("triangle_ids") ? 1 : 0;
+  sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 4, 12, {{0, lists}});
+  if (keep_) sortSome_ = make("clustered_voxel/visibility/sort_rows.comp", 4, 12, {{0, lists}, {1, 1}});
   merge_ = make("clustered_voxel/visibility/merge.comp", 7, 24, {{0, weights_ == Weights::Seen ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 16, {});
-  const auto frame = static_cast<uint32_t>(frame_);
+  const auto frame = static_cast<uint32_t>(frame_), hit = static_cast<uint32_t>(hit_);
+  const uint32_t near = lists;
+  const uint32_t corners = context.has("corners") ? 1 : 0;
+  const uint32_t masked = near != 0 && context.traits().alphaMasked ? 1 : 0;
   const uint32_t skyImage = context.traits().skyImage ? 1 : 0;
-  if (traversal_ == Traversal::Bresenham) {
-    trace_ = make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, 24, {{2, frame}, {7, skyImage}});
-  } else {
-    const auto hit = static_cast<uint32_t>(hit_);
-    const uint32_t near = context.has("triangle_ids") ? 1 : 0;
-    const uint32_t corners = context.has("corners") ? 1 : 0;
-    const uint32_t masked = near != 0 && context.traits().alphaMasked ? 1 : 0;
-    if (skip_ == Skip::Clearance) {
-      clearanceRows_ = make("clustered_voxel/visibility/clearance_rows.comp", 5, 0, {});
-      clearancePlanes_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 1}});
-      clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
-    }
-    // Where the clearance of a large grid does not fit one binding, bricks do.
-    trace_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                  {{0, 2u - static_cast<uint32_t>(skip_)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}});
-    if (skip_ == Skip::Clearance)
-      traceBricks_ = make("clustered_voxel/visibility/trace.comp", kTraceBindings, 24,
-                          {{0, 1}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}});
+  const auto makeTrace = [&](Skip skip, uint32_t someRays) {
+    if (traversal_ == Traversal::Bresenham)
+      return make("clustered_voxel/visibility/trace_bresenham.comp", kTraceBindings, kTracePushBytes,
+                  {{2, frame}, {7, skyImage}, {8, someRays}});
+    return make(
+        "clustered_voxel/visibility/trace.comp", kTraceBindings, kTracePushBytes,
+        {{0, 2u - static_cast<uint32_t>(skip)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}, {8, someRays}});
+  };
+  if (traversal_ == Traversal::Dda && skip_ == Skip::Clearance) {
+    clearanceRows_ = make("clustered_voxel/visibility/clearance_rows.comp", 5, 0, {});
+    clearancePlanes_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 1}});
+    clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
+  }
+  // Where the clearance of a large grid does not fit one binding, bricks do.
+  const bool mayNeedBricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance;
+  trace_ = makeTrace(skip_, 0);
+  if (mayNeedBricks) traceBricks_ = makeTrace(Skip::Bricks, 0);
+  if (keep_) {
+    traceSome_ = makeTrace(skip_, 1);
+    if (mayNeedBricks) traceSomeBricks_ = makeTrace(Skip::Bricks, 1);
+    kept_.prepare(context, rays_,
+                  make("clustered_voxel/visibility/reuse.comp", kReuseBindings, KeptHits::kPushBytes,
+                       {{1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}}));
   }
   std::vector<uint32_t> directions = makeDirections(rays_);
   directions.resize(shared::kShiftCount * shared::kMaxRays);
@@ -156,10 +172,10 @@ uint32_t Visibility::rowCount(graph::RecordContext& context, uint32_t chunk) con
   return static_cast<uint32_t>(std::min<uint64_t>(kRowsPerChunk, context.count("faces") - uint64_t{chunk} * kRowsPerChunk));
 }
 
-// Step 0 learns the grid and counts planes; step 1 makes them; step 1 + k fills chunk k − 1 and traces chunk k.
+// Step 0 learns the grid and counts planes; step 1 makes them, and compares with what is kept; step firstTrace() + k fills chunk k − 1 and traces chunk k.
 uint32_t Visibility::stepCount(graph::RecordContext& context) {
   const uint32_t chunks = chunkCount(context);
-  return chunks == 0 ? 2 : chunks + 2;
+  return chunks == 0 ? 2 : firstTrace() + chunks + 1;
 }
 
 void Visibility::record(graph::RecordContext& context) {
@@ -176,9 +192,12 @@ void Visibility::record(graph::RecordContext& context) {
   if (step == 1) {
     if (!context.grown("planes").empty()) recordPlanes(context);
     if (!context.grown("clearance").empty()) recordClearance(context);
+    if (keep_ && chunkCount(context) > 0) kept_.recordVoxels(context);
   }
-  if (step > 1) recordFill(context, step - 2);
-  if (step <= chunkCount(context)) recordTrace(context, step - 1);
+  if (step < firstTrace()) return;
+  const uint32_t chunk = step - firstTrace();
+  if (chunk > 0) recordFill(context, chunk - 1);
+  if (chunk < chunkCount(context)) recordTrace(context, chunk);
 }
 
 void Visibility::stepDone(graph::RecordContext& context) {
@@ -186,14 +205,16 @@ void Visibility::stepDone(graph::RecordContext& context) {
   const uint32_t chunks = chunkCount(context);
   if (step == 0) begin(context);
   if (step == 1 && usesClearance()) context.clearGrown("clearance_work");
-  if (step >= 1 && step <= chunks) {
+  if (step == 1 && keep_) kept_.readChanges(context);
+  if (step >= firstTrace() && step - firstTrace() < chunks) {
     uint32_t total[2];
     const std::vector<std::byte> raw = context.readBuffer("total", 0, sizeof(total));
     std::memcpy(total, raw.data(), sizeof(total));
     context.grow("entries", (uint64_t{total[0]} + 31) / 32 * 4 + uint64_t{shared::kRowPadding} * 4);
-    context.reportProgress(static_cast<double>(step) / chunks);
+    context.reportProgress(static_cast<double>(step - firstTrace() + 1) / chunks);
   }
-  if (step < chunks || (chunks > 0 && step == chunks)) return;
+  if (step + 1 < stepCount(context)) return;
+  if (keep_) kept_.end(context);
   if (context.has("pieces")) context.clearGrown("pieces");
   uint32_t entryCount = 0;
   const std::vector<std::byte> raw = context.readBuffer("entry_count", 0, sizeof(entryCount));
@@ -223,6 +244,7 @@ void Visibility::begin(graph::RecordContext& context) {
   context.clearGrown("entries");
   context.clearGrown("clearance");
   context.clearGrown("planes");
+  if (keep_) kept_.begin(context, grid_);
   start_ = std::chrono::steady_clock::now();
   clearanceTooLarge_ = maxRange_ != 0 && clearanceBytes(grid_) > maxRange_;
   const uint64_t voxels = context.count("voxels");
@@ -292,23 +314,15 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
     return hasTriangles ? context.buffer(name) : context.buffer("grid");
   };
   struct {
-    uint32_t firstFace, rowCount;
-  } sortPush{firstFace, rows};
-  commands.bind(sortRows_, {context.buffer("faces"), order, optional("triangle_first")});
-  commands.push(sortPush);
-  commands.dispatch(1);
-  commands.fill(table, shared::kEmptySlot);
-  commands.barrier();
-  struct {
     uint32_t firstFace, rowCount, rayCount;
     float nearDistance;
     uint32_t voxelCount;
     float triangles;
   } tracePush{firstFace, rows, rays_, near_, static_cast<uint32_t>(context.count("voxels")), triangles_};
+  static_assert(sizeof(tracePush) == kTracePushBytes);
   // An absent clearance is never read.
   const gpu::Buffer& clearance = usesClearance() ? *context.grown("clearance").at(0) : context.buffer("grid");
-  const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
-  commands.bind(bricks ? traceBricks_ : trace_, {context.buffer("grid"),
+  const std::vector<gpu::BoundResource> bindings{context.buffer("grid"),
                                                  context.buffer("occupancy"),
                                                  context.buffer("rank"),
                                                  context.buffer("voxels"),
@@ -329,11 +343,27 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
                                                  optional("scene.materials"),
                                                  optional("scene.textures"),
                                                  ids.empty() ? context.buffer("grid") : *context.grown("pieces").front(),
-                                                 context.has("corners") ? context.image("corners") : absent_});
+                                                 context.has("corners") ? context.image("corners") : absent_};
+  const bool some = keep_ && kept_.reuses();
+  if (some) kept_.recordReuse(context, bindings, &tracePush, rows);
+  const gpu::Buffer& todo = some ? context.buffer("todo") : context.buffer("grid");
+  struct {
+    uint32_t firstFace, rowCount, wordCount;
+  } sortPush{firstFace, rows, shared::rayWords(rays_)};
+  commands.bind(some ? sortSome_ : sortRows_, {context.buffer("faces"), order, optional("triangle_first"), todo});
+  commands.push(sortPush);
+  commands.dispatch(1);
+  commands.fill(table, shared::kEmptySlot);
+  commands.barrier();
+  std::vector<gpu::BoundResource> traceBindings = bindings;
+  traceBindings.push_back(todo);
+  const bool bricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance && clearanceTooLarge_;
+  commands.bind(bricks ? (some ? traceSomeBricks_ : traceBricks_) : (some ? traceSome_ : trace_), traceBindings);
   commands.push(tracePush);
   const uint32_t lanes = (rows + 63) / 64 * 64;
   commands.dispatchItems(uint64_t{lanes} * ((rays_ + shared::kRaysPerLane - 1) / shared::kRaysPerLane), 64);
   commands.barrier();
+  if (keep_) kept_.recordHits(context, firstFace, rows);
   struct {
     uint32_t rowCount, rayCount, tableBits, clusterCount, firstFace, faceCount;
   } mergePush{rows,

@@ -9,6 +9,7 @@
 //         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
 //         planes+ uvec2, plane_extras u32 × V         what rays are stopped by (shared/voxel_plane.h)
 //         weights u32 × F                             Σ a over the rays that hit the face from beyond 2 h, in 1/64 h²; 0: nobody sees it
+//         kept_even+, kept_odd+                        keep: what each ray hit, and hashes of voxels (kept_hits.h); one of the two, by turns
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
 // cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
@@ -33,6 +34,7 @@
 
 #include "engine/gpu/scan.h"
 #include "engine/graph/node.h"
+#include "modules/clustered_voxel/visibility/kept_hits.h"
 #include "shaders/shared/voxel.h"
 
 namespace radivox::clustered_voxel {
@@ -57,6 +59,7 @@ class Visibility : public graph::Node {
  private:
   uint32_t chunkCount(graph::RecordContext& context) const;
   uint32_t rowCount(graph::RecordContext& context, uint32_t chunk) const;
+  uint32_t firstTrace() const { return keep_ ? 2 : 1; }  ///< step
   bool usesClearance() const { return traversal_ == Traversal::Dda && skip_ == Skip::Clearance && !clearanceTooLarge_; }
   void begin(graph::RecordContext& context);
   void countPlanes(graph::RecordContext& context);
@@ -73,9 +76,12 @@ class Visibility : public graph::Node {
   Skip skip_ = Skip::Clearance;
   float near_ = 8.f;
   float triangles_ = 2.f;
+  bool keep_ = false;
   params::Table table_;
 
-  gpu::Pipeline countPlanes_, planes_, clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, trace_, traceBricks_, merge_, fill_;
+  gpu::Pipeline countPlanes_, planes_, clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, sortSome_, trace_, traceSome_,
+      traceBricks_, traceSomeBricks_, merge_, fill_;
+  KeptHits kept_;
   gpu::Buffer directions_;
   gpu::Image absent_;  ///< for optional images
   std::unique_ptr<gpu::Scan> scan_;

@@ -10,10 +10,20 @@ layout(constant_id = 0) const bool kLists = false;  // rays test triangles
 layout(set = 0, binding = 0, scalar) readonly buffer Faces { Face faces[]; };
 layout(set = 0, binding = 1, scalar) writeonly buffer Order { uint order[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer Todo { uint todo[]; };
 layout(push_constant, scalar) uniform Push {
   uint firstFace;
   uint rowCount;
+  uint wordCount;  // of `todo`, a row
 };
+layout(constant_id = 1) const bool kSomeRows = false;  // only those with rays to trace; order[kRowsPerChunk]: how many
+
+bool isWanted(uint row) {
+  if (!kSomeRows) return true;
+  uint any_ = 0u;
+  for (uint w = 0u; w < wordCount; ++w) any_ |= todo[row * wordCount + w];
+  return any_ != 0u;
+}
 
 const uint kClasses = kLists ? 8u : 1u;
 const uint kParts = 16u;
@@ -36,7 +46,7 @@ void main() {
     for (uint b = 0u; b < 4u; ++b) {
       uint row = 4u * w + b;
       uint key = 255u;
-      if (row < rowCount) {
+      if (row < rowCount && isWanted(row)) {
         uint faceKey = faces[firstFace + row].key;
         key = (faceKey & 7u) * kClasses + (kLists ? classOf(faceKey >> 3) : 0u);
       }
@@ -64,6 +74,7 @@ void main() {
   barrier();
   uint next = 0u;
   for (uint l = 0u; l < lane; ++l) next += sums[l];
+  if (kSomeRows && lane == 127u) order[kRowsPerChunk] = next + sums[lane];
   for (uint bin = lane * kRun; bin < min((lane + 1u) * kRun, kBins); ++bin) {
     uint key = bin / kParts;
     uint first = (bin % kParts) * (kWords / kParts);

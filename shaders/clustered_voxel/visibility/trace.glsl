@@ -1,5 +1,6 @@
 // What the shaders that cast the rays of voxel faces share: bindings, push constants, and where rays start. `trace.comp` counts what the rays hit;
-// `bench.comp` casts them one by one, for measuring. Before including: the extensions of shared/texture.glsl, and visibility.h.
+// `bench.comp` casts them one by one, for measuring. Before including: the extensions of shared/texture.glsl, and visibility.h;
+// what push constants go on with may be defined as RADIVOX_TRACE_MORE.
 #ifndef RADIVOX_CLUSTERED_VOXEL_VISIBILITY_TRACE_GLSL
 #define RADIVOX_CLUSTERED_VOXEL_VISIBILITY_TRACE_GLSL
 layout(constant_id = 0) const uint kSkip = 2;
@@ -28,6 +29,9 @@ layout(push_constant, scalar) uniform Push {
   float nearDistance;  // voxels; hits up to here keep their face
   uint voxelCount;
   float triangleDistance;  // voxels; up to here rays meet triangles
+#ifdef RADIVOX_TRACE_MORE
+  RADIVOX_TRACE_MORE
+#endif
 };
 #include "shared/dispatch.glsl"
 #include "shared/scene.h"
@@ -112,7 +116,7 @@ ivec3 voxelAt(vec3 p) { return clamp(ivec3(floor(p)), ivec3(0), ivec3(castSize) 
 
 // A face as its rays start from it.
 struct Start {
-  uint face;
+  uint seed;         // faceSeed
   uint f;            // which way it looks
   uvec3 coordinate;  // of its voxel
   vec3 origin;       // of rays that do not start on pieces
@@ -127,9 +131,10 @@ struct Start {
 Start startOf(uint s) {
   Start start;
   Face face = faces[s];
-  start.face = s;
   start.f = face.key & 7u;
-  start.coordinate = voxelCoordinate(face.key >> 3);
+  uint packed = voxels[face.key >> 3];
+  start.seed = faceSeed(packed, start.f);
+  start.coordinate = unpackVoxel(packed);
   start.normal = decodeNormal(face.normal);
   vec3 position = facePosition(face, start.coordinate);
   start.origin = liftedOrigin(position, start.normal);
@@ -147,7 +152,7 @@ Start startOf(uint s) {
   } else {
     start.voxel = ivec3(start.coordinate);
   }
-  start.directions = shiftOf(s) * rayCount;
+  start.directions = shiftOf(start.seed) * rayCount;
   start.surface = Surface(0u, 0u, false, 0.0);
   if (kNear) start.surface = surfaceOf(face.key >> 3, start.f);
   return start;
@@ -160,7 +165,7 @@ TraversalRay rayFromPiece(Start start, uint at, out vec3 about, out uint own) {
   own = kNone;
   if (start.surface.total > 0.0) {
     // Strata of the surface, in an order that has nothing to do with that of the directions.
-    uint turn = hashBits(start.face ^ 0x51ed270bu);
+    uint turn = hashBits(start.seed ^ 0x51ed270bu);
     uint entry = pieceAt(start.surface, start.f, (float((at * 11u + turn) % rayCount) + 0.5) / float(rayCount), about);
     own = triangleIds[entry];
     from = vec3(start.coordinate) + decodePosition(pieces[entry].x) + kPieceLift * about;

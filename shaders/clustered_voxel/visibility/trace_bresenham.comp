@@ -22,6 +22,8 @@ layout(constant_id = 7) const bool kSkyImage = false;  // misses are kept by fin
 layout(set = 0, binding = 9, scalar) uniform Directions { uint directions[kShiftCount * kMaxRays]; };  // M a shift
 layout(set = 0, binding = 10, scalar) readonly buffer Order { uint order[]; };
 layout(set = 0, binding = 11, scalar) writeonly buffer Hits { uint hits[]; };
+layout(set = 0, binding = 22, scalar) readonly buffer Todo { uint todo[]; };  // rayWords(M) a row
+layout(constant_id = 8) const bool kSomeRays = false;  // see trace.comp
 layout(push_constant, scalar) uniform Push {
   uint firstFace;
   uint rowCount;
@@ -38,17 +40,23 @@ void main() {
   uint item = radivoxItemIndex();
   uint slot = item % lanes;
   uint ray = (item / lanes) * kRaysPerLane;
-  if (slot >= rowCount || ray >= rayCount) return;
-  uint end = min(ray + kRaysPerLane, rayCount);
+  uint rows = kSomeRays ? order[kRowsPerChunk] : rowCount;
+  if (slot >= rows || ray >= rayCount) return;
   uint row = order[slot];
+  uint left = rayBits(rayCount, ray);
+  if (kSomeRays) left = todo[row * rayWords(rayCount) + ray / kRaysPerLane];
+  uint first = ray;
   uint s = firstFace + row;
   Face face = faces[s];
-  uvec3 coordinate = voxelCoordinate(face.key >> 3);
+  uint packed = voxels[face.key >> 3];
+  uvec3 coordinate = unpackVoxel(packed);
+  uint seed = faceSeed(packed, face.key & 7u);
   vec3 n = kFrame == 1 ? faceVector(face.key & 7u) : decodeNormal(face.normal);
   int reach = int(max(grid.size.x, max(grid.size.y, grid.size.z)));
-  uint table = shiftOf(s) * rayCount;
+  uint table = shiftOf(seed) * rayCount;
 
-  for (; ray < end; ++ray) {
+  for (; left != 0u; left &= left - 1u) {
+    ray = first + uint(findLSB(left));
     TraversalRay way = makeTraversalRay(vec3(0.0), alongNormal(decodeDirection(directions[table + ray]), n));
     vec3 a = abs(way.direction);
     uint axis = a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
@@ -68,7 +76,7 @@ void main() {
     while (true) {
       if (!isInside(voxel)) break;
       uint none = 0u;
-      if (!skip) hit = castFace(way, TraversalCursor(vec3(voxel), 0.0), true, 0u, none, rayRandom(s, ray));
+      if (!skip) hit = castFace(way, TraversalCursor(vec3(voxel), 0.0), true, 0u, none, rayRandom(seed, ray));
       if (hit != kHitNothing) break;
       skip = false;
       ++i;

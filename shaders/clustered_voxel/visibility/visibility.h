@@ -5,10 +5,10 @@
 #include "../../shared/voxel_codec.h"
 RADIVOX_SHARED_BEGIN
 
-// Shifts of the direction set; a face takes one by its hash, so that neighbours do not share a pattern.
+// Shifts of the direction set; a face takes one by its seed, so that neighbours do not share a pattern.
 RADIVOX_CONST uint kShiftCount = 16u;
 // Rays that one lane traces, one after the other.
-RADIVOX_CONST uint kRaysPerLane = 32u;
+RADIVOX_CONST uint kRaysPerLane = 32u;  // a word of bits
 
 // What a ray hit, as the trace leaves it for the merge: a face, with kNearHit if it keeps its id and kCloseHit if it does not count for the
 // face's weight; or kMissHit + bin (kSkyBinCount: absorbed).
@@ -20,6 +20,9 @@ RADIVOX_CONST float kCloseDistance = 2.0f;  // voxels: surfaces that pass throug
 RADIVOX_CONST float kAreaUnits = 64.0f;
 RADIVOX_CONST uint kMostWeight = 0xff000000u;
 RADIVOX_CONST uint kMissHit = 0x7fffff00u;
+// Rays that are still to be traced: bits, rayWords(M) words a row.
+RADIVOX_FUNCTION uint rayWords(uint rayCount) { return (rayCount + 31u) >> 5; }
+RADIVOX_FUNCTION uint rayBits(uint rayCount, uint first) { return rayCount - first >= 32u ? 0xffffffffu : (1u << (rayCount - first)) - 1u; }
 RADIVOX_CONST uint kEmptySlot = 0xffffffffu;
 
 RADIVOX_FUNCTION uint hashBits(uint x) {
@@ -30,8 +33,10 @@ RADIVOX_FUNCTION uint hashBits(uint x) {
   x ^= x >> 16;
   return x;
 }
-RADIVOX_FUNCTION uint shiftOf(uint face) { return hashBits(face) % kShiftCount; }
-RADIVOX_FUNCTION uint rayRandom(uint face, uint ray) { return hashBits(face * kMaxRays + ray + 0x9e3779b9u); }
+// What a face draws its random numbers from: its place, so that they stay when other faces come and go. voxel: packed coordinate.
+RADIVOX_FUNCTION uint faceSeed(uint voxel, uint f) { return hashBits(voxel + f * 0x9e3779b9u); }
+RADIVOX_FUNCTION uint shiftOf(uint seed) { return hashBits(seed) % kShiftCount; }
+RADIVOX_FUNCTION uint rayRandom(uint seed, uint ray) { return hashBits(seed * kMaxRays + ray + 0x9e3779b9u); }
 
 // A direction of the upper hemisphere ↔ its place on the unit disc, unorm16 × 2: a word each, so that kShiftCount · kMaxRays of them
 // fit the smallest uniform buffer that a device may have.
