@@ -65,14 +65,14 @@ void Transfer::record(graph::RecordContext& context) {
     commands.barrier();
     commands.bind(count_, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart});
     commands.push(push);
-    commands.dispatchItems(clusterCount, 1);  // a group a cluster
+    commands.dispatchItems(clusterCount, shared::kTransferGroup);
     scan_->scan(commands, rowStart, rowStart, clusterCount + 1, b("scan"), &b("total"));
   } else if (clusterCount > 0) {
     push.matrix = context.grown("entries").front()->address();
     commands.bind(fill_, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart, b("faces"),
                           b("sky"), b(context.has("weights") ? "weights" : "labels")});
     commands.push(push);
-    commands.dispatchItems(clusterCount, 1);
+    commands.dispatchItems(clusterCount, shared::kTransferGroup);
   }
 }
 

@@ -1,8 +1,10 @@
-// One group a cluster: which clusters its faces' rows name. Columns are looked at in windows of 65536, each a bit set in shared memory,
-// so that they come out ascending and without a table; scenes of more clusters read their rows again for every window.
+// A group takes one cluster after the other: which clusters its faces' rows name. Columns are looked at in windows of 65536, each a bit set in shared
+// memory, so that they come out ascending and without a table; scenes of more clusters read their rows again for every window. Which words of the set
+// have bits is kept in a set of its own, a word a lane: a cluster's work follows what its rows name, not how many clusters there are.
 #ifndef RADIVOX_TRANSFER_COLUMNS_GLSL
 #define RADIVOX_TRANSFER_COLUMNS_GLSL
 #include "shared/dispatch.glsl"
+#include "shared/transfer_entry.h"
 #include "shared/visibility_rows.glsl"
 
 layout(local_size_x = 64) in;
@@ -20,8 +22,9 @@ layout(set = 0, binding = 4, scalar) readonly buffer Members { uint members[]; }
 
 const uint kLanes = 64u;
 const uint kWindow = 65536u;
-const uint kWords = kWindow / 32u;
+const uint kWords = kWindow / 32u;  // 32 · kLanes
 shared uint columnBits[kWords];
+shared uint wordBits[kLanes];  // of the words of columnBits that are not 0
 
 // Column of an entry: the cluster, or that of the near face; kMissBase for rays that left the scene, kAbsorbed for those lost on backs.
 uint columnOf(uint entry) {
@@ -37,20 +40,42 @@ VisibilityRow rowOf(uint s) {
   return openRow(chunkTable[s / kRowsPerChunk], rowStart[slot], rowStart[slot + 1u]);
 }
 
-uint windowWords(uint window) { return min(kWords, (push.clusterCount - window + 31u) / 32u); }
+// All lanes, once; ends with a barrier.
+void clearColumns() {
+  uint lane = gl_LocalInvocationID.x;
+  for (uint i = lane; i < min(kWords, (push.clusterCount + 31u) / 32u); i += kLanes) columnBits[i] = 0u;
+  wordBits[lane] = 0u;
+  barrier();
+}
 
 // All lanes; ends with a barrier.
+void forgetColumns() {
+  uint lane = gl_LocalInvocationID.x;
+  for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) columnBits[32u * lane + uint(findLSB(left))] = 0u;
+  wordBits[lane] = 0u;
+  barrier();
+}
+
+// How many columns the lane has in the set.
+uint countOwnColumns() {
+  uint lane = gl_LocalInvocationID.x;
+  uint found = 0u;
+  for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) found += uint(bitCount(columnBits[32u * lane + uint(findLSB(left))]));
+  return found;
+}
+
+// All lanes; ends with a barrier. The set is empty before.
 void findColumns(Cluster cluster, uint window) {
   uint lane = gl_LocalInvocationID.x;
-  uint words = windowWords(window);
-  for (uint i = lane; i < words; i += kLanes) columnBits[i] = 0u;
-  barrier();
   for (uint i = lane; i < cluster.faceCount; i += kLanes) {
     uint s = members[cluster.firstMember + i];
     VisibilityRow row = rowOf(s);
     while (hasEntry(row)) {
       uint column = columnOf(nextEntry(row, push.clusterCount + push.faceCount)) - window;  // wraps for columns before the window
-      if (column < kWindow && column + window < push.clusterCount) atomicOr(columnBits[column >> 5], 1u << (column & 31u));
+      if (column >= kWindow || column + window >= push.clusterCount) continue;
+      uint word = column >> 5;
+      atomicOr(columnBits[word], 1u << (column & 31u));
+      atomicOr(wordBits[word >> 5], 1u << (word & 31u));
     }
   }
   barrier();

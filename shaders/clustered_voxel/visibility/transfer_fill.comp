@@ -75,14 +75,11 @@ float greatestOf(Cluster cluster, bool byArea) {
   return uintBitsToFloat(greatestWeight);
 }
 
-void main() {
-  uint c = radivoxGroupIndex();
-  if (c >= push.clusterCount) return;  // the whole group
+// The row of one cluster; all lanes.
+void fillRow(uint c) {
   uint lane = gl_LocalInvocationID.x;
   Cluster cluster = clusters[c];
-  if (lane == 0u) {
-    totalLow = totalHigh = skyLow = skyHigh = 0u;
-  }
+  if (lane == 0u) totalLow = totalHigh = skyLow = skyHigh = 0u;
   barrier();
   bool byArea = !kWeighted;
   float greatest = greatestOf(cluster, byArea);
@@ -98,17 +95,8 @@ void main() {
   uint row = starts[c];
   for (uint window = 0u; window < push.clusterCount; window += kWindow) {
     findColumns(cluster, window);
-    // Columns before each word: lanes take runs of words, then the runs are added up.
-    uint words = windowWords(window);
-    uint run = (words + kLanes - 1u) / kLanes;
-    uint begin = min(lane * run, words);
-    uint end = min(begin + run, words);
-    uint sum = 0u;
-    for (uint i = begin; i < end; ++i) {
-      columnsBefore[i] = sum;
-      sum += uint(bitCount(columnBits[i]));
-    }
-    laneSums[lane] = sum;
+    // Columns before each word that has any: each lane's are added up, then those of the lanes before.
+    laneSums[lane] = countOwnColumns();
     barrier();
     uint before = 0u;
     uint windowColumns = 0u;
@@ -116,12 +104,17 @@ void main() {
       if (i < lane) before += laneSums[i];
       windowColumns += laneSums[i];
     }
-    for (uint i = begin; i < end; ++i) columnsBefore[i] += before;
+    for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) {
+      uint word = 32u * lane + uint(findLSB(left));
+      columnsBefore[word] = before;
+      before += uint(bitCount(columnBits[word]));
+    }
 
     // The first batch of all adds up the whole, columns or none.
     for (uint firstRank = 0u; firstRank < windowColumns || (window == 0u && firstRank == 0u); firstRank += kBatch) {
       bool addsUp = window == 0u && firstRank == 0u;
-      for (uint i = lane; i < kBatch; i += kLanes) sumLow[i] = sumHigh[i] = 0u;
+      uint count = min(kBatch, windowColumns - firstRank);
+      for (uint i = lane; i < count; i += kLanes) sumLow[i] = sumHigh[i] = 0u;
       barrier();
       for (uint i = lane; i < cluster.faceCount; i += kLanes) {
         uint s = members[cluster.firstMember + i];
@@ -144,14 +137,13 @@ void main() {
         }
       }
       if (addsUp) {
-        radivoxFixedAtomicAdd(totalLow, totalHigh, total);
-        radivoxFixedAtomicAdd(skyLow, skyHigh, missed);
+        if (total != uvec2(0u)) radivoxFixedAtomicAdd(totalLow, totalHigh, total);
+        if (missed != uvec2(0u)) radivoxFixedAtomicAdd(skyLow, skyHigh, missed);
       }
       barrier();
 
-      // Lanes take runs of columns once more: what was passed before each, in units, is what it begins with.
+      // Lanes take runs of columns: what was passed before each, in units, is what it begins with.
       uvec2 whole = uvec2(totalLow, totalHigh);
-      uint count = min(kBatch, windowColumns - firstRank);
       uint columnRun = (count + kLanes - 1u) / kLanes;
       uint firstColumn = min(lane * columnRun, count);
       uint endColumn = min(firstColumn + columnRun, count);
@@ -161,37 +153,47 @@ void main() {
       laneHigh[lane] = runSum.y;
       barrier();
       uvec2 upTo = passed;
-      for (uint i = 0u; i < kLanes; ++i) {
+      for (uint i = 0u; i * columnRun < count; ++i) {
         if (i < lane) upTo = fixedAdd(upTo, uvec2(laneLow[i], laneHigh[i]));
         passed = fixedAdd(passed, uvec2(laneLow[i], laneHigh[i]));
       }
-      uint unitsBefore = unitsOf(upTo, whole);
-      for (uint i = firstColumn; i < endColumn; ++i) {
-        upTo = fixedAdd(upTo, uvec2(sumLow[i], sumHigh[i]));
-        uint units = unitsOf(upTo, whole);
-        sumLow[i] = units - unitsBefore;
-        unitsBefore = units;
+      if (firstColumn < endColumn) {
+        uint unitsBefore = unitsOf(upTo, whole);
+        for (uint i = firstColumn; i < endColumn; ++i) {
+          upTo = fixedAdd(upTo, uvec2(sumLow[i], sumHigh[i]));
+          uint units = unitsOf(upTo, whole);
+          sumLow[i] = units - unitsBefore;
+          unitsBefore = units;
+        }
       }
       barrier();
-      for (uint i = lane; i < words; i += kLanes) {
-        uint bits = columnBits[i];
-        uint rank = columnsBefore[i] - firstRank;
-        while (bits != 0u) {
-          uint bit = uint(findLSB(bits));
-          bits &= bits - 1u;
-          if (rank < count) entryAt(row + firstRank + rank).value = packTransferEntry(window + i * 32u + bit, sumLow[rank], push.weightBits);
+      for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) {
+        uint word = 32u * lane + uint(findLSB(left));
+        uint rank = columnsBefore[word] - firstRank;
+        for (uint bits = columnBits[word]; bits != 0u; bits &= bits - 1u) {
+          uint column = window + word * 32u + uint(findLSB(bits));
+          if (rank < count) entryAt(row + firstRank + rank).value = packTransferEntry(column, sumLow[rank], push.weightBits);
           rank += 1u;
         }
       }
       barrier();
     }
     row += windowColumns;
-    barrier();
+    forgetColumns();
   }
   // What is lost on backs lies between the columns and the misses.
   if (lane == 0u) {
     uvec2 whole = uvec2(totalLow, totalHigh);
     uint kept = unitsOf(fixedAdd(whole, fixedNegate(uvec2(skyLow, skyHigh))), whole);
     sky[c] = 1.0 - float(kept) * transferUnit(push.weightBits);
+  }
+}
+
+void main() {
+  uint firstCluster = radivoxGroupIndex() * kTransferGroup;
+  clearColumns();
+  for (uint c = firstCluster; c < min(firstCluster + kTransferGroup, push.clusterCount); ++c) {
+    fillRow(c);
+    barrier();
   }
 }
