@@ -72,7 +72,7 @@ class TransferTest : public oracles::GpuTest {
     uint32_t weightBits = 0;
     std::vector<float> sky;
   };
-  Output transfer(const Case& c) {
+  Output transfer(const Case& c, const std::string& lanes = "auto") {
     oracle::VoxelStructures s;
     s.faces = c.faces;
     s.voxels.assign(c.faces.size(), 0);
@@ -96,6 +96,7 @@ class TransferTest : public oracles::GpuTest {
     h.setCount("faces", c.faces.size());
     h.setCount("clusters", c.clusterCount);
     h.add<clustered_voxel::Transfer>("transfer");
+    h.set("transfer.lanes", lanes);
     h.connect("in.row_start", "transfer.visibility_row_start");
     h.connect("in.entries", "transfer.visibility_entries");
     for (const char* port : {"chunk_table", "faces", "labels", "clusters", "members"})
@@ -117,7 +118,11 @@ class TransferTest : public oracles::GpuTest {
   }
 
   void check(const Case& c) {
-    const Output out = transfer(c);
+    const Output out = transfer(c, "64");
+    const Output few = transfer(c, "8");
+    EXPECT_EQ(out.rowStart, few.rowStart);
+    EXPECT_EQ(out.entries, few.entries);
+    EXPECT_EQ(out.sky, few.sky);
     const oracle::SparseMatrix expected = oracle::clusterTransfer(c.rows, c.weighted(), c.labels, c.clusterCount);
     const double unit = std::exp2(-static_cast<double>(out.weightBits));
     double worst = 0, worstSum = 0;

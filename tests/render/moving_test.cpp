@@ -68,7 +68,7 @@ class Moving : public oracles::GpuTest {
     return o;
   }
   /// Places the block here and there, and compares with pictures from scratch. Returns the mean share of rays traced.
-  double moveAbout(const Settings& settings, const std::string& graph = "clustered_voxel") {
+  double moveAbout(const Settings& settings, const std::string& graph = "clustered_voxel_pixels", size_t placeCount = 2) {
     scene::Scene s = scene::makeBuiltin("cornell_point");
     const uint32_t block = addBlock(s);
     const scene::Scene atOrigin = s;
@@ -89,14 +89,17 @@ class Moving : public oracles::GpuTest {
     const std::vector<glm::mat4> places{
         glm::translate(one, middle + glm::vec3(0.1f, 0, 0)), glm::translate(one, middle + glm::vec3(-0.15f, 0.2f, 0.1f)),
         glm::rotate(glm::translate(one, middle), 0.7f, glm::vec3(0.6f, 0.8f, 0)), glm::translate(one, middle)};
-    for (const glm::mat4& by : places) {
-      SCOPED_TRACE(share);
-      place(by);
+    for (size_t i = 0; i < placeCount; ++i) {
+      SCOPED_TRACE(i);
+      place(places[i]);
       kept.setGeometry(s);
       kept.run();
       EXPECT_EQ(resultOf(kept), resultFromScratch(s, settings, graph));
-      share += kept.figure("visibility", "traced_rays") / kept.figure("visibility", "rays") / static_cast<double>(places.size());
+      share += kept.figure("visibility", "traced_rays") / kept.figure("visibility", "rays") / static_cast<double>(placeCount);
     }
+    place(places.back());
+    kept.setGeometry(s);
+    kept.run();
     EXPECT_EQ(resultOf(kept), first) << "back where it was";
     // Nothing moves.
     kept.setGeometry(s);
@@ -117,8 +120,8 @@ class Moving : public oracles::GpuTest {
 
 const Settings kSmall{{"voxelize.resolution", "40"}, {"visibility.rays", "16"}};
 
-TEST_F(Moving, ABlockIsTracedAnewAndTheRestKept) {
-  const double share = moveAbout(kSmall);
+TEST_F(Moving, SlowABlockIsTracedAnewAndTheRestKept) {
+  const double share = moveAbout(kSmall, "clustered_voxel_pixels", 3);
   EXPECT_GT(share, 0.05);
   EXPECT_LT(share, 0.7);
 }
@@ -133,7 +136,7 @@ TEST_F(Moving, SlowEveryKindOfRay) {
       {{"visibility.rays", "100"}, {"visibility.skip", "bricks"}},
       {{"visibility.triangles", "0"}, {"visibility.rays", "100"}, {"visibility.near", "0"}},
       {{"visibility.triangles", "0"}, {"visibility.traversal", "bresenham"}, {"visibility.frame", "axis"}, {"visibility.hit", "voxel"}},
-      {{"visibility.triangles", "3"}, {"triangles.most", "1"}},
+      {{"visibility.triangles", "3"}, {"triangles.most", "2"}},
   };
   for (size_t k = 0; k < kinds.size(); ++k) {
     SCOPED_TRACE(k);
@@ -141,7 +144,7 @@ TEST_F(Moving, SlowEveryKindOfRay) {
   }
 }
 
-TEST_F(Moving, SlowThePixelReceiverToo) { EXPECT_LT(moveAbout(kSmall, "clustered_voxel_pixels"), 0.7); }
+TEST_F(Moving, SlowTheFaceReceiverToo) { EXPECT_LT(moveAbout(kSmall, "clustered_voxel", 1), 0.7); }
 
 TEST_F(Moving, WhatDoesNotFitIsRefused) {
   scene::Scene s = scene::makeBuiltin("cornell_point");

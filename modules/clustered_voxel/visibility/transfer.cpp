@@ -20,6 +20,12 @@ struct Push {
 
 }  // namespace
 
+Transfer::Transfer()
+    : table_({params::choice(
+          "lanes", &lanes_, {"auto", "8", "64"},
+          "lanes that make a row together (same result): auto: 8 on CPU devices, which take them as one vector, 64 on others",
+          params::Invalidates::Plan)}) {}
+
 void Transfer::declare(graph::Declaration& d) {
   d.read("visibility_row_start", "first bit of each face's row in its chunk");
   d.read("visibility_entries", "rows of the faces, by chunk");
@@ -44,13 +50,16 @@ void Transfer::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   constexpr auto kB = gpu::BindingType::StorageBuffer;
   scan_ = std::make_unique<gpu::Scan>(device);
+  const bool few = lanes_ == Lanes::Eight || (lanes_ == Lanes::Auto && device.capabilities().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
+  const uint32_t lanes = few ? 8 : 64;
   count_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_count.comp",
                                                           .bindings = {kB, kB, kB, kB, kB, kB},
-                                                          .pushConstantBytes = sizeof(Push)});
+                                                          .pushConstantBytes = sizeof(Push),
+                                                          .constants = {{1, lanes}}});
   fill_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
                                                          .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                          .pushConstantBytes = sizeof(Push),
-                                                         .constants = {{0, context.has("weights") ? 1u : 0u}}});
+                                                         .constants = {{0, context.has("weights") ? 1u : 0u}, {1, lanes}}});
 }
 
 void Transfer::record(graph::RecordContext& context) {

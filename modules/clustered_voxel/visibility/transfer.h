@@ -7,7 +7,7 @@
 //                                   columns ascend within a row; publishes [transfer_entries]
 //         sky        f32 × C        share of the cluster's rays that left the scene
 // runs    when visibility or clusters change; host-paced in two steps, since the number of entries must be known to store them
-// cost    four passes over the visibility entries; C · C / 32 words of shared memory traffic; 4 B an entry
+// cost    four passes over the visibility entries; 4 B an entry
 // source  METHODS section 1, Bounce: F_cc' = Σ_{s∈c} w_s m_s,c' / (M Σ w_s), w_s = a_s where no weights are given. Near hits count for their face's cluster.
 //
 // Sums are integers (weights to 31 bits of the cluster's largest), so any order gives the same bits, and Σ_c' F_cc' + sky = 1
@@ -25,6 +25,8 @@ namespace radivox::clustered_voxel {
 class Transfer : public graph::Node {
  public:
   static constexpr std::string_view kType = "clustered_voxel.transfer";
+  enum class Lanes : uint32_t { Auto, Eight, SixtyFour };
+  Transfer();
   std::string_view type() const override { return kType; }
   params::Table& params() override { return table_; }
   void declare(graph::Declaration& d) override;
@@ -34,6 +36,7 @@ class Transfer : public graph::Node {
   void stepDone(graph::RecordContext& context) override;
 
  private:
+  Lanes lanes_ = Lanes::Auto;
   params::Table table_;
   std::unique_ptr<gpu::Scan> scan_;
   gpu::Pipeline count_, fill_;

@@ -1,13 +1,13 @@
 // A group takes one cluster after the other: which clusters its faces' rows name. Columns are looked at in windows of 65536, each a bit set in shared
 // memory, so that they come out ascending and without a table; scenes of more clusters read their rows again for every window. Which words of the set
-// have bits is kept in a set of its own, a word a lane: a cluster's work follows what its rows name, not how many clusters there are.
+// have bits is kept in a set of its own: a cluster's work follows what its rows name, not how many clusters there are.
 #ifndef RADIVOX_TRANSFER_COLUMNS_GLSL
 #define RADIVOX_TRANSFER_COLUMNS_GLSL
 #include "shared/dispatch.glsl"
 #include "shared/transfer_entry.h"
 #include "shared/visibility_rows.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x_id = 1) in;
 layout(push_constant, scalar) uniform Push {
   uint clusterCount;
   uint faceCount;
@@ -20,11 +20,13 @@ layout(set = 0, binding = 2, scalar) readonly buffer Labels { uint labels[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer Clusters { Cluster clusters[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer Members { uint members[]; };
 
-const uint kLanes = 64u;
+layout(constant_id = 1) const uint kLanes = 64u;  // 64 or a part of it
 const uint kWindow = 65536u;
-const uint kWords = kWindow / 32u;  // 32 · kLanes
+const uint kWords = kWindow / 32u;
+const uint kSums = kWords / 32u;
+const uint kOwnSums = kSums / kLanes;  // words of wordBits that a lane takes, side by side
 shared uint columnBits[kWords];
-shared uint wordBits[kLanes];  // of the words of columnBits that are not 0
+shared uint wordBits[kSums];  // of the words of columnBits that are not 0
 
 // Column of an entry: the cluster, or that of the near face; kMissBase for rays that left the scene, kAbsorbed for those lost on backs.
 uint columnOf(uint entry) {
@@ -44,15 +46,17 @@ VisibilityRow rowOf(uint s) {
 void clearColumns() {
   uint lane = gl_LocalInvocationID.x;
   for (uint i = lane; i < min(kWords, (push.clusterCount + 31u) / 32u); i += kLanes) columnBits[i] = 0u;
-  wordBits[lane] = 0u;
+  for (uint i = lane; i < kSums; i += kLanes) wordBits[i] = 0u;
   barrier();
 }
 
 // All lanes; ends with a barrier.
 void forgetColumns() {
   uint lane = gl_LocalInvocationID.x;
-  for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) columnBits[32u * lane + uint(findLSB(left))] = 0u;
-  wordBits[lane] = 0u;
+  for (uint w = kOwnSums * lane; w < kOwnSums * (lane + 1u); ++w) {
+    for (uint left = wordBits[w]; left != 0u; left &= left - 1u) columnBits[32u * w + uint(findLSB(left))] = 0u;
+    wordBits[w] = 0u;
+  }
   barrier();
 }
 
@@ -60,7 +64,9 @@ void forgetColumns() {
 uint countOwnColumns() {
   uint lane = gl_LocalInvocationID.x;
   uint found = 0u;
-  for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) found += uint(bitCount(columnBits[32u * lane + uint(findLSB(left))]));
+  for (uint w = kOwnSums * lane; w < kOwnSums * (lane + 1u); ++w) {
+    for (uint left = wordBits[w]; left != 0u; left &= left - 1u) found += uint(bitCount(columnBits[32u * w + uint(findLSB(left))]));
+  }
   return found;
 }
 

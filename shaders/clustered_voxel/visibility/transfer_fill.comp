@@ -104,10 +104,12 @@ void fillRow(uint c) {
       if (i < lane) before += laneSums[i];
       windowColumns += laneSums[i];
     }
-    for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) {
-      uint word = 32u * lane + uint(findLSB(left));
-      columnsBefore[word] = before;
-      before += uint(bitCount(columnBits[word]));
+    for (uint w = kOwnSums * lane; w < kOwnSums * (lane + 1u); ++w) {
+      for (uint left = wordBits[w]; left != 0u; left &= left - 1u) {
+        uint word = 32u * w + uint(findLSB(left));
+        columnsBefore[word] = before;
+        before += uint(bitCount(columnBits[word]));
+      }
     }
 
     // The first batch of all adds up the whole, columns or none.
@@ -167,13 +169,15 @@ void fillRow(uint c) {
         }
       }
       barrier();
-      for (uint left = wordBits[lane]; left != 0u; left &= left - 1u) {
-        uint word = 32u * lane + uint(findLSB(left));
-        uint rank = columnsBefore[word] - firstRank;
-        for (uint bits = columnBits[word]; bits != 0u; bits &= bits - 1u) {
-          uint column = window + word * 32u + uint(findLSB(bits));
-          if (rank < count) entryAt(row + firstRank + rank).value = packTransferEntry(column, sumLow[rank], push.weightBits);
-          rank += 1u;
+      for (uint w = kOwnSums * lane; w < kOwnSums * (lane + 1u); ++w) {
+        for (uint left = wordBits[w]; left != 0u; left &= left - 1u) {
+          uint word = 32u * w + uint(findLSB(left));
+          uint rank = columnsBefore[word] - firstRank;
+          for (uint bits = columnBits[word]; bits != 0u; bits &= bits - 1u) {
+            uint column = window + word * 32u + uint(findLSB(bits));
+            if (rank < count) entryAt(row + firstRank + rank).value = packTransferEntry(column, sumLow[rank], push.weightBits);
+            rank += 1u;
+          }
         }
       }
       barrier();
