@@ -91,6 +91,7 @@ class Renderer {
 
   void setCamera(const scene::CameraDescription& camera);
   void setLights();
+  void setGeometry();
   void resize(uint32_t width, uint32_t height);
   void importImage(const std::string& name, const RadivoxImageInfo& image, uint64_t version);
   void importBuffer(const std::string& name, const RadivoxBufferInfo& buffer, uint64_t version);
@@ -106,6 +107,8 @@ class Renderer {
   graph::FrameStats stats;
 
  private:
+  /// Its numbers of things changed, or what the plan was made for.
+  void takeScene();
   struct Imported {
     graph::Import shape;
     gpu::Image image;

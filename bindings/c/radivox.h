@@ -72,7 +72,7 @@ typedef struct RadivoxAdoptInfo {
   VkInstance instance;
   VkPhysicalDevice physicalDevice;
   VkDevice device;
-  VkQueue queue; /* left alone by you while radivoxRun, radivoxCreateRenderer, radivoxSetLights and radivoxWritePicture work */
+  VkQueue queue; /* left alone by you while radivoxRun, radivoxCreateRenderer, radivoxSetLights, radivoxSetGeometry and radivoxWritePicture work */
   const VkPhysicalDeviceFeatures2* enabledFeatures; /* as you gave it to vkCreateDevice; NULL: as radivoxNeededFeatures has it */
   const char* const* extensions;                    /* those you enabled */
   uint32_t extensionCount;
@@ -186,6 +186,12 @@ RADIVOX_API RadivoxResult radivoxGetLight(const RadivoxScene* scene, uint32_t in
 /* For renderers to come, and for radivoxSetLights. */
 RADIVOX_API RadivoxResult radivoxSetSceneLights(RadivoxScene* scene, const RadivoxLight* lights, uint32_t lightCount,
                                                 const float skyRadiance[3]);
+/* Where a thing moves: vertices by an affine map, 4 columns of 4; mirrors are refused. For renderers to come, and for radivoxSetGeometry. */
+RADIVOX_API RadivoxResult radivoxMoveVertices(RadivoxScene* scene, uint32_t firstVertex, uint32_t vertexCount, const float matrix[16]);
+/* Things in a scene that was loaded: each a range of vertices. The name is good while the scene is. */
+RADIVOX_API uint32_t radivoxObjectCount(const RadivoxScene* scene);
+RADIVOX_API RadivoxResult radivoxGetObject(const RadivoxScene* scene, uint32_t index, const char** name, uint32_t* firstVertex,
+                                           uint32_t* vertexCount);
 
 /* -- Graph ------------------------------------------------------------------------------------------------------------------------- */
 
@@ -258,9 +264,11 @@ RADIVOX_API RadivoxResult radivoxCreateRenderer(const RadivoxRendererInfo* info,
 /* Waits for frames that are recorded and not completed. */
 RADIVOX_API void radivoxDestroyRenderer(RadivoxRenderer* renderer);
 
-/* The GPU must be done with earlier frames in these three. */
+/* The GPU must be done with earlier frames in these four. */
 RADIVOX_API RadivoxResult radivoxSetCamera(RadivoxRenderer* renderer, const RadivoxCamera* camera);
 RADIVOX_API RadivoxResult radivoxSetLights(RadivoxRenderer* renderer); /* those that the scene has now */
+/* Vertices where the scene has them now. With the parameter visibility.keep only rays that pass what has changed are traced again. */
+RADIVOX_API RadivoxResult radivoxSetGeometry(RadivoxRenderer* renderer);
 RADIVOX_API RadivoxResult radivoxResize(RadivoxRenderer* renderer, uint32_t width, uint32_t height);
 
 typedef struct RadivoxImageInfo {

@@ -17,7 +17,7 @@ uint64_t planVersionOf(const graph::Graph& graph) {
 bool isSamePlanFor(const scene::Traits& a, const scene::Traits& b) {
   return a.directionalLightCount == b.directionalLightCount && a.pointLightCount == b.pointLightCount &&
          a.spotLightCount == b.spotLightCount && a.emissiveTriangleCount == b.emissiveTriangleCount && a.sky == b.sky &&
-         a.skyImage == b.skyImage && a.emittersByRays == b.emittersByRays;
+         a.skyImage == b.skyImage && a.emittersByRays == b.emittersByRays && a.boundsMin == b.boundsMin && a.boundsMax == b.boundsMax;
 }
 
 graph::Shape shapeOf(const RadivoxImport& import) {
@@ -102,6 +102,15 @@ void Renderer::setCamera(const scene::CameraDescription& camera) {
 
 void Renderer::setLights() {
   gpuScene_->setLights(*scene_);
+  takeScene();
+}
+
+void Renderer::setGeometry() {
+  gpuScene_->setGeometry(*scene_);
+  takeScene();
+}
+
+void Renderer::takeScene() {
   if (!isSamePlanFor(traits_, scene::traitsFor(*scene_, {}))) executor_.reset();  // planned anew by the next run
   if (executor_ == nullptr) return;
   for (const auto& [name, value] : gpuScene_->counts()) executor_->setCount(name, value);
@@ -245,6 +254,10 @@ RadivoxResult radivoxSetCamera(RadivoxRenderer* renderer, const RadivoxCamera* c
 
 RadivoxResult radivoxSetLights(RadivoxRenderer* renderer) {
   return guarded([&] { of(renderer).setLights(); });
+}
+
+RadivoxResult radivoxSetGeometry(RadivoxRenderer* renderer) {
+  return guarded([&] { of(renderer).setGeometry(); });
 }
 
 RadivoxResult radivoxResize(RadivoxRenderer* renderer, uint32_t width, uint32_t height) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "bindings/c/handles.h"
 
@@ -240,5 +241,30 @@ RadivoxResult radivoxSetSceneLights(RadivoxScene* scene, const RadivoxLight* lig
     const glm::vec3 sky = takeSky({skyRadiance[0], skyRadiance[1], skyRadiance[2]});
     scene->scene->lights = std::move(taken);
     scene->scene->skyRadiance = sky;
+  });
+}
+
+RadivoxResult radivoxMoveVertices(RadivoxScene* scene, uint32_t firstVertex, uint32_t vertexCount, const float matrix[16]) {
+  return guarded([&] {
+    c::require(scene, "scene");
+    c::require(matrix, "matrix");
+    scene::moveVertices(*scene->scene, firstVertex, vertexCount, glm::make_mat4(matrix));
+  });
+}
+
+uint32_t radivoxObjectCount(const RadivoxScene* scene) {
+  return scene == nullptr ? 0 : static_cast<uint32_t>(scene->scene->objects.size());
+}
+
+RadivoxResult radivoxGetObject(const RadivoxScene* scene, uint32_t index, const char** name, uint32_t* firstVertex, uint32_t* vertexCount) {
+  return guarded([&] {
+    c::require(scene, "scene");
+    const std::vector<scene::Object>& objects = scene->scene->objects;
+    if (index >= objects.size())
+      throw Error(ErrorCode::BadInput, "index " + std::to_string(index) + ": the scene has " + std::to_string(objects.size()) +
+                                           " objects; see radivoxObjectCount");
+    if (name != nullptr) *name = objects[index].name.c_str();
+    if (firstVertex != nullptr) *firstVertex = objects[index].firstVertex;
+    if (vertexCount != nullptr) *vertexCount = objects[index].vertexCount;
   });
 }

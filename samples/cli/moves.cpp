@@ -57,8 +57,8 @@ std::vector<Piece> findPieces(const scene::Scene& scene) {
   return pieces;
 }
 
-/// The pieces nearest to one of the largest that may move, until they have `share` of the triangles: what moves lies together, as things do.
-/// Each must stay within the bounds by `by`, or the grid would be another.
+/// Moves the pieces nearest to the middle of the scene, until they have `share` of the triangles: what moves lies together, as things do. Each must stay
+/// within the bounds, or the grid would be another; where too few can, less moves.
 scene::Scene moveShare(const scene::Scene& scene, const std::vector<Piece>& pieces, double share, const glm::vec3& by, size_t& moved) {
   const scene::Traits traits = scene.traits();
   const auto wanted = static_cast<size_t>(share * static_cast<double>(scene.triangleCount()));
@@ -92,6 +92,7 @@ struct Timing {
   double seconds = 0;
   std::map<std::string, double> nodes;
   std::map<std::string, double> figures;
+  double voxels = 0;
 };
 
 class Renderer {
@@ -114,6 +115,8 @@ class Renderer {
       if (node.ranLastFrame) timing.nodes[node.name] = node.gpuMs * 1e-3;
       for (const auto& [name, value] : node.figures) timing.figures[node.name + "." + name] = value;
     }
+    const graph::Counts& counts = executor_->counts();
+    if (const auto found = counts.find("voxels"); found != counts.end()) timing.voxels = static_cast<double>(found->second);
     return timing;
   }
   std::vector<float> picture(const scene::Scene& scene) {
@@ -186,7 +189,7 @@ int runMoves(const Options& options, const std::string& sharesText) {
     columns.emplace_back(column);
     char line[256];
     std::snprintf(line, sizeof line, "| %s | %.1f %% | %.1f %% | %.2f | %.2f | %.2f | %.2f | %s |", column,
-                  100.0 * figure("visibility.changed_voxels") / std::max(1.0, figure("index.voxels")),
+                  100.0 * figure("visibility.changed_voxels") / std::max(1.0, after.back().voxels),
                   100.0 * figure("visibility.traced_rays") / std::max(1.0, figure("visibility.rays")), seconds(after.back()),
                   after.back().seconds, seconds(scratch), scratch.seconds, equal ? "yes" : "no");
     std::cout << line << std::endl;
