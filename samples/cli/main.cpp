@@ -226,6 +226,15 @@ void refuseExtras(const CLI::App& command, const std::string& what) {
               "unknown option '" + extra + "'; " + (near.empty() ? "see `radivox " + what + "--help`" : "did you mean '--" + near + "'?"));
 }
 
+/// Of pictures that are only measured.
+void addMeasuredOptions(CLI::App* command, Options& options) {
+  addGraphOption(command, options, kPictureGraph, false);
+  addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
+  command->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
+  command->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
+  command->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+}
+
 void requireScene(const Options& options, const std::string& name) {
   if (!options.scene.empty()) return;
   throw Error(ErrorCode::BadInput,
@@ -286,21 +295,13 @@ int run(int argc, char** argv) {
   CLI::App* needs = app.add_subcommand("needs", "time and memory saved by leaving out what these scenes do not need, as a table");
   needs->add_option("SCENE", neededScenes, ".gltf or .glb files, or builtin:NAME[?key=value&...]")->type_name("")->take_all();
   needs->add_option("--runs", neededRuns, "pictures whose median counts (default: 5)")->type_name("N");
-  addGraphOption(needs, options, kPictureGraph, false);
-  addRepeated(needs, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
-  needs->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
-  needs->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
-  needs->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addMeasuredOptions(needs, options);
   std::string shares = "1,10,50";
   CLI::App* moves =
       app.add_subcommand("moves", "what a picture costs after part of the scene has moved, beside one from scratch, as a table");
   addSceneOptions(moves, options);
   moves->add_option("--shares", shares, "triangles that move, percent (default: 1,10,50)")->type_name("N,N");
-  addGraphOption(moves, options, kPictureGraph, false);
-  addRepeated(moves, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
-  moves->add_option("--bounces", options.bounces, "indirect bounces (default: all)")->type_name("N|all");
-  moves->add_option("--size", options.size, "pixels (default: 960x540)")->type_name("WxH");
-  moves->add_option("--device", options.device, "Vulkan device of `radivox info` (default: the best)")->type_name("N");
+  addMeasuredOptions(moves, options);
   BenchOptions benchOptions;
   CLI::App* bench = app.add_subcommand("bench", "speed of voxel rays beside Embree's closest hits of the same rays, and how they agree");
   addBenchOptions(bench, options, benchOptions);
