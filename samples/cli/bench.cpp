@@ -27,7 +27,6 @@ using clustered_voxel::RayBench;
 using Cast = RayBench::Cast;
 using nlohmann::ordered_json;
 
-constexpr const char* kVisibility = "clustered_voxel.visibility";
 constexpr Cast kCasts[] = {Cast::Traversal, Cast::Planes, Cast::Walk};
 
 struct Agreement {
@@ -55,13 +54,6 @@ std::string paramOf(graph::Node& node, std::string_view name) {
     if (param.name == name) return param.get();
   }
   return {};
-}
-
-const graph::Graph::Entry& findVisibility(const Job& job) {
-  for (const graph::Graph::Entry& entry : job.graph.nodes()) {
-    if (entry.node->type() == kVisibility) return entry;
-  }
-  throw Error(ErrorCode::BadInput, "--graph " + job.graphName + " casts no voxel rays; give one with a " + kVisibility + " node");
 }
 
 RayBench::Settings settingsOf(graph::Node& visibility, uint64_t rays, const scene::Traits& traits) {

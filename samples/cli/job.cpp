@@ -176,4 +176,13 @@ void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char*
   for (const std::string& endpoint : endpoints) job.graph.output(endpoint);
 }
 
+const graph::Graph::Entry& findVisibility(const Job& job) {
+  constexpr std::string_view kVisibility = "clustered_voxel.visibility";
+  for (const graph::Graph::Entry& entry : job.graph.nodes()) {
+    if (entry.node->type() == kVisibility) return entry;
+  }
+  throw Error(ErrorCode::BadInput,
+              "--graph " + job.graphName + " casts no voxel rays; give one with a " + std::string(kVisibility) + " node");
+}
+
 }  // namespace radivox::cli

@@ -44,6 +44,9 @@ inline constexpr const char* kFaceGraph = "clustered_voxel";
 /// Fills `job`; the graph's outputs are those that the AOVs need, and with `wantsDisplay` the tone-mapped picture. Throws BadInput.
 void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char* fallbackGraph = kPictureGraph);
 
+/// The node that casts rays from voxel faces; throws BadInput where the graph has none.
+const graph::Graph::Entry& findVisibility(const Job& job);
+
 params::Table lightTable(scene::LightOptions& lights);
 
 /// Linked-in modules and those of --module.

@@ -59,15 +59,12 @@ std::vector<Piece> findPieces(const scene::Scene& scene) {
 
 /// Moves the pieces nearest to the middle of the scene, until they have `share` of the triangles: what moves lies together, as things do. Each must stay
 /// within the bounds, or the grid would be another; where too few can, less moves.
-scene::Scene moveShare(const scene::Scene& scene, const std::vector<Piece>& pieces, double share, const glm::vec3& by, size_t& moved) {
+scene::Scene moveShare(const scene::Scene& scene, const std::vector<Piece>& pieces, double share, int axis, float by, size_t& moved) {
   const scene::Traits traits = scene.traits();
   const auto wanted = static_cast<size_t>(share * static_cast<double>(scene.triangleCount()));
   std::vector<const Piece*> movable;
   for (const Piece& piece : pieces) {
-    const auto inside = [&](const glm::vec3& p) {
-      return glm::all(glm::greaterThan(p, traits.boundsMin)) && glm::all(glm::lessThan(p, traits.boundsMax));
-    };
-    if (piece.triangles > 0 && inside(piece.least) && inside(piece.greatest) && inside(piece.least + by) && inside(piece.greatest + by))
+    if (piece.triangles > 0 && piece.least[axis] > traits.boundsMin[axis] && piece.greatest[axis] + by < traits.boundsMax[axis])
       movable.push_back(&piece);
   }
   moved = 0;
@@ -82,7 +79,7 @@ scene::Scene moveShare(const scene::Scene& scene, const std::vector<Piece>& piec
     if (moved >= wanted) break;
     // One that is far too large is passed over for smaller ones.
     if (moved + piece->triangles > wanted + wanted / 5 + 64) continue;
-    for (const uint32_t vertex : piece->vertices) result.vertices[vertex].position += by;
+    for (const uint32_t vertex : piece->vertices) result.vertices[vertex].position[axis] += by;
     moved += piece->triangles;
   }
   return result;
@@ -152,8 +149,8 @@ int runMoves(const Options& options, const std::string& sharesText) {
   Job keptJob, freshJob;  // nodes belong to one plan
   prepareJob(options, false, freshJob);
   Options keeping = options;
-  for (const graph::Graph::Entry& entry : freshJob.graph.nodes())
-    if (entry.node->type() == "clustered_voxel.visibility") keeping.sets.push_back(entry.name + ".keep=true");
+  const std::string visibility = findVisibility(freshJob).name;
+  keeping.sets.push_back(visibility + ".keep=true");
   prepareJob(keeping, false, keptJob);
   const scene::Scene scene = scene::loadScene(options.scene, options.sky);
   const scene::CameraDescription& camera = scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
@@ -162,8 +159,7 @@ int runMoves(const Options& options, const std::string& sharesText) {
   const glm::vec3 extent = traits.boundsMax - traits.boundsMin;
   // A fiftieth of the longest side, some voxels, along it.
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  glm::vec3 by(0.f);
-  by[axis] = 0.02f * extent[axis];
+  const float by = 0.02f * extent[axis];
 
   Renderer kept(*device, keptJob, scene, camera), fresh(*device, freshJob, scene, camera);
   kept.render(scene);  // compiles shaders late; it is not counted
@@ -176,22 +172,25 @@ int runMoves(const Options& options, const std::string& sharesText) {
   Timing scratch;
   for (const double share : shares) {
     size_t moved = 0;
-    const scene::Scene there = moveShare(scene, pieces, share, by, moved);
+    const scene::Scene there = moveShare(scene, pieces, share, axis, by, moved);
     after.push_back(kept.render(there));
     scratch = fresh.render(there);
     const bool equal = kept.picture(there) == fresh.picture(there);
     same = same && equal;
-    const auto figure = [&](const char* name) { return after.back().figures.contains(name) ? after.back().figures.at(name) : 0.0; };
-    const auto seconds = [](const Timing& timing) { return timing.nodes.contains("visibility") ? timing.nodes.at("visibility") : 0.0; };
+    const auto figure = [&](const char* name) {
+      const auto found = after.back().figures.find(visibility + name);
+      return found != after.back().figures.end() ? found->second : 0.0;
+    };
+    const auto seconds = [&](const Timing& timing) { return timing.nodes.contains(visibility) ? timing.nodes.at(visibility) : 0.0; };
     const double part = static_cast<double>(moved) / static_cast<double>(std::max<size_t>(scene.triangleCount(), 1));
     char column[32];
     std::snprintf(column, sizeof column, "%.1f %%", 100.0 * part);
     columns.emplace_back(column);
     char line[256];
     std::snprintf(line, sizeof line, "| %s | %.1f %% | %.1f %% | %.2f | %.2f | %.2f | %.2f | %s |", column,
-                  100.0 * figure("visibility.changed_voxels") / std::max(1.0, after.back().voxels),
-                  100.0 * figure("visibility.traced_rays") / std::max(1.0, figure("visibility.rays")), seconds(after.back()),
-                  after.back().seconds, seconds(scratch), scratch.seconds, equal ? "yes" : "no");
+                  100.0 * figure(".changed_voxels") / std::max(1.0, after.back().voxels),
+                  100.0 * figure(".traced_rays") / std::max(1.0, figure(".rays")), seconds(after.back()), after.back().seconds,
+                  seconds(scratch), scratch.seconds, equal ? "yes" : "no");
     std::cout << line << std::endl;
     kept.render(scene);  // back, for the next
   }

@@ -39,7 +39,7 @@ TEST_F(Usage, HelpNamesTheGraphThatIsTaken) {
     const size_t graph = help.find("--graph"), begin = help.find("clustered_voxel", graph);
     return help.substr(begin, help.find(')', begin) - begin);
   };
-  for (const char* command : {"render", "graph", "needs"}) EXPECT_EQ(defaultOf(command), "clustered_voxel_pixels") << command;
+  for (const char* command : {"render", "graph", "needs", "moves"}) EXPECT_EQ(defaultOf(command), "clustered_voxel_pixels") << command;
   for (const char* command : {"vdb", "view"}) EXPECT_EQ(defaultOf(command), "clustered_voxel") << command;
   const auto plan = [](std::vector<std::string> more) {
     more.insert(more.begin(), {"graph", "builtin:box"});
