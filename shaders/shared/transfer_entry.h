@@ -6,9 +6,6 @@
 #include "functions.h"
 RADIVOX_SHARED_BEGIN
 
-// Clusters that a group of clustered_voxel.transfer takes, one after the other.
-RADIVOX_CONST uint kTransferGroup = 32u;
-
 // At most 24: form factors are floats without rounding.
 RADIVOX_FUNCTION uint transferWeightBits(uint clusterCount) {
   uint columnBits = 0u;

@@ -119,7 +119,7 @@ class TransferTest : public oracles::GpuTest {
 
   void check(const Case& c) {
     const Output out = transfer(c, "64");
-    const Output few = transfer(c, "8");
+    const Output few = transfer(c, "16");
     EXPECT_EQ(out.rowStart, few.rowStart);
     EXPECT_EQ(out.entries, few.entries);
     EXPECT_EQ(out.sky, few.sky);
@@ -151,6 +151,7 @@ class TransferTest : public oracles::GpuTest {
 TEST_F(TransferTest, EqualsSumsInDouble) { check(makeCase(3000, 150, 40, 1)); }
 TEST_F(TransferTest, OneCluster) { check(makeCase(700, 1, 20, 2)); }
 TEST_F(TransferTest, EveryFaceACluster) { check(makeCase(300, 300, 30, 3)); }
+TEST_F(TransferTest, SlowMoreColumnsThanABatch) { check(makeCase(12000, 2000, 200, 10)); }
 TEST_F(TransferTest, SeveralChunks) { check(makeCase(2 * shared::kRowsPerChunk + 100, 700, 8, 4)); }
 // 65536 columns are one window; that many rows take a while.
 TEST_F(TransferTest, SlowMoreColumnsThanAWindow) { check(makeCase(70000, 66000, 4, 5)); }

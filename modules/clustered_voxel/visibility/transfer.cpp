@@ -21,10 +21,9 @@ struct Push {
 }  // namespace
 
 Transfer::Transfer()
-    : table_({params::choice(
-          "lanes", &lanes_, {"auto", "8", "64"},
-          "lanes that make a row together (same result): auto: 8 on CPU devices, which take them as one vector, 64 on others",
-          params::Invalidates::Plan)}) {}
+    : table_({params::choice("lanes", &lanes_, {"auto", "16", "64"},
+                             "lanes that make a row together (same result): auto: 16 on CPU devices for clusters of few faces, else 64",
+                             params::Invalidates::Plan)}) {}
 
 void Transfer::declare(graph::Declaration& d) {
   d.read("visibility_row_start", "first bit of each face's row in its chunk");
@@ -50,16 +49,21 @@ void Transfer::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   constexpr auto kB = gpu::BindingType::StorageBuffer;
   scan_ = std::make_unique<gpu::Scan>(device);
-  const bool few = lanes_ == Lanes::Eight || (lanes_ == Lanes::Auto && device.capabilities().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
-  const uint32_t lanes = few ? 8 : 64;
-  count_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_count.comp",
-                                                          .bindings = {kB, kB, kB, kB, kB, kB},
-                                                          .pushConstantBytes = sizeof(Push),
-                                                          .constants = {{1, lanes}}});
-  fill_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
-                                                         .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                         .pushConstantBytes = sizeof(Push),
-                                                         .constants = {{0, context.has("weights") ? 1u : 0u}, {1, lanes}}});
+  const auto make = [&](Pipelines& pipelines, uint32_t lanes) {
+    pipelines.count = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_count.comp",
+                                                                     .bindings = {kB, kB, kB, kB, kB, kB},
+                                                                     .pushConstantBytes = sizeof(Push),
+                                                                     .constants = {{1, lanes}}});
+    pipelines.fill = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
+                                                                    .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                                    .pushConstantBytes = sizeof(Push),
+                                                                    .constants = {{0, context.has("weights") ? 1u : 0u}, {1, lanes}}});
+  };
+  const bool isCpu = device.capabilities().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  hasFew_ = lanes_ == Lanes::Sixteen || (lanes_ == Lanes::Auto && isCpu);
+  hasMany_ = lanes_ != Lanes::Sixteen;
+  if (hasFew_) make(few_, 16);
+  if (hasMany_) make(many_, 64);
 }
 
 void Transfer::record(graph::RecordContext& context) {
@@ -68,20 +72,25 @@ void Transfer::record(graph::RecordContext& context) {
   const gpu::Buffer& rowStart = context.buffer("row_start");
   Push push{clusterCount, static_cast<uint32_t>(context.count("faces")), 0, shared::transferWeightBits(clusterCount)};
   const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
+  // A cluster of Sponza has ten faces: CPU devices, which stop at every barrier once for each vector of lanes, are faster with few lanes. Large
+  // clusters want many: Mesa's llvmpipe ends the loops of a lane after 65535 rounds in all.
+  constexpr uint64_t kMostFacesForFew = 48;
+  const bool few = hasFew_ && (!hasMany_ || context.count("faces") <= kMostFacesForFew * clusterCount);
+  const Pipelines& pipelines = few ? few_ : many_;
   if (context.step() == 0) {
     assert(b("scan").bytes() >= gpu::Scan::scratchBytes(clusterCount + 1));
     commands.fill(rowStart, 0);
     commands.barrier();
-    commands.bind(count_, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart});
+    commands.bind(pipelines.count, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart});
     commands.push(push);
-    commands.dispatchItems(clusterCount, shared::kTransferGroup);
+    commands.dispatchItems(clusterCount, 1);  // a group a cluster
     scan_->scan(commands, rowStart, rowStart, clusterCount + 1, b("scan"), &b("total"));
   } else if (clusterCount > 0) {
     push.matrix = context.grown("entries").front()->address();
-    commands.bind(fill_, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart, b("faces"),
-                          b("sky"), b(context.has("weights") ? "weights" : "labels")});
+    commands.bind(pipelines.fill, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart,
+                                   b("faces"), b("sky"), b(context.has("weights") ? "weights" : "labels")});
     commands.push(push);
-    commands.dispatchItems(clusterCount, shared::kTransferGroup);
+    commands.dispatchItems(clusterCount, 1);
   }
 }
 

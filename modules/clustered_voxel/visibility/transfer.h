@@ -25,7 +25,7 @@ namespace radivox::clustered_voxel {
 class Transfer : public graph::Node {
  public:
   static constexpr std::string_view kType = "clustered_voxel.transfer";
-  enum class Lanes : uint32_t { Auto, Eight, SixtyFour };
+  enum class Lanes : uint32_t { Auto, Sixteen, SixtyFour };
   Transfer();
   std::string_view type() const override { return kType; }
   params::Table& params() override { return table_; }
@@ -39,7 +39,10 @@ class Transfer : public graph::Node {
   Lanes lanes_ = Lanes::Auto;
   params::Table table_;
   std::unique_ptr<gpu::Scan> scan_;
-  gpu::Pipeline count_, fill_;
+  struct Pipelines {
+    gpu::Pipeline count, fill;
+  } few_, many_;
+  bool hasFew_ = false, hasMany_ = false;
 };
 
 }  // namespace radivox::clustered_voxel

@@ -1,10 +1,9 @@
-// A group takes one cluster after the other: which clusters its faces' rows name. Columns are looked at in windows of 65536, each a bit set in shared
+// One group a cluster: which clusters its faces' rows name. Columns are looked at in windows of 65536, each a bit set in shared
 // memory, so that they come out ascending and without a table; scenes of more clusters read their rows again for every window. Which words of the set
 // have bits is kept in a set of its own: a cluster's work follows what its rows name, not how many clusters there are.
 #ifndef RADIVOX_TRANSFER_COLUMNS_GLSL
 #define RADIVOX_TRANSFER_COLUMNS_GLSL
 #include "shared/dispatch.glsl"
-#include "shared/transfer_entry.h"
 #include "shared/visibility_rows.glsl"
 
 layout(local_size_x_id = 1) in;

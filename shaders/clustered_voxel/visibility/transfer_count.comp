@@ -8,18 +8,17 @@ layout(set = 0, binding = 5, scalar) writeonly buffer Counts { uint counts[]; };
 shared uint columnCount;
 
 void main() {
+  uint c = radivoxGroupIndex();
+  if (c >= push.clusterCount) return;  // the whole group
   uint lane = gl_LocalInvocationID.x;
-  uint firstCluster = radivoxGroupIndex() * kTransferGroup;
   clearColumns();
-  for (uint c = firstCluster; c < min(firstCluster + kTransferGroup, push.clusterCount); ++c) {
-    if (lane == 0u) columnCount = 0u;
-    Cluster cluster = clusters[c];
-    for (uint window = 0u; window < push.clusterCount; window += kWindow) {
-      findColumns(cluster, window);
-      uint found = countOwnColumns();
-      if (found > 0u) atomicAdd(columnCount, found);
-      forgetColumns();
-    }
-    if (lane == 0u) counts[c] = columnCount;
+  if (lane == 0u) columnCount = 0u;
+  Cluster cluster = clusters[c];
+  for (uint window = 0u; window < push.clusterCount; window += kWindow) {
+    findColumns(cluster, window);
+    uint found = countOwnColumns();
+    if (found > 0u) atomicAdd(columnCount, found);
+    forgetColumns();
   }
+  if (lane == 0u) counts[c] = columnCount;
 }

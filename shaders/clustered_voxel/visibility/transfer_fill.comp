@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 // Rows of the cluster matrix: F_cc' = Σ_s w_s m_sc' / Σ_s w_s M_s, and the misses. Weights become integers relative to the cluster's
 // largest (31 bits), so the sums are exact and the same for any order. Form factors are rounded to their units (shared/transfer_entry.h) in
 // running sums over the columns: no entry is off by a unit, and every row with its misses sums to one exactly.
@@ -51,13 +52,12 @@ uint unitsOf(uvec2 part, uvec2 whole) {
   uint rest = drop >= 32 ? part.y >> (drop - 32) : drop == 0 ? part.x : (part.y << (32 - drop)) | (part.x >> drop);
   uint units = rest / divisor;
   rest -= units * divisor;
-  for (uint i = 0u; i < push.weightBits; ++i) {
-    rest <<= 1;
-    units <<= 1;
-    if (rest >= divisor) {
-      rest -= divisor;
-      units |= 1u;
-    }
+  [[unroll]] for (uint i = 0u; i < 24u; ++i) {
+    bool counts = i < push.weightBits;
+    uint twice = counts ? rest << 1 : rest;
+    bool above = counts && twice >= divisor;
+    rest = above ? twice - divisor : twice;
+    units = counts ? units << 1 | (above ? 1u : 0u) : units;
   }
   return units + (2u * rest >= divisor ? 1u : 0u);
 }
@@ -194,10 +194,8 @@ void fillRow(uint c) {
 }
 
 void main() {
-  uint firstCluster = radivoxGroupIndex() * kTransferGroup;
+  uint c = radivoxGroupIndex();
+  if (c >= push.clusterCount) return;  // the whole group
   clearColumns();
-  for (uint c = firstCluster; c < min(firstCluster + kTransferGroup, push.clusterCount); ++c) {
-    fillRow(c);
-    barrier();
-  }
+  fillRow(c);
 }
