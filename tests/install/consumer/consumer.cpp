@@ -31,8 +31,8 @@ int run(char** argv) {
     changed += foggy.data[i] != clear.data[i] ? 1 : 0;
   }
   std::printf("largest relative difference %g, %g values changed\n", largest, changed);
-  // exp() of a GPU may be off by 3 + 2 |x| units in the last place, here of x up to 1.
-  return foggy.data.size() == clear.data.size() && largest < 2e-6 && changed > 0.5 * static_cast<double>(foggy.data.size()) ? 0 : 1;
+  // exp() of a GPU may be off by 3 + 2 |x| units in the last place, here of x up to 1: 6e-7 of a share, more of a sum darker than its parts.
+  return foggy.data.size() == clear.data.size() && largest < 4e-6 && changed > 0.5 * static_cast<double>(foggy.data.size()) ? 0 : 1;
 }
 
 }  // namespace
