@@ -134,8 +134,8 @@ bool App::turn(double seconds, const Controls& controls) {
   Worker::Status before = std::exchange(status, worker_.status());
   for (const std::string& line : status.saved) say(line);
   if (!status.error.empty() && status.error != before.error) say(status.error);
-  changed = status.doing != before.doing || std::abs(status.fraction - before.fraction) > 0.01 || status.error != before.error ||
-            !status.saved.empty();
+  changed = status.doing != before.doing || status.idle != before.idle || std::abs(status.fraction - before.fraction) > 0.01 ||
+            status.error != before.error || !status.saved.empty();
   if (std::optional<Picture> fresh = worker_.takePicture()) {
     if (fresh->view.moving) divisor_ = chooseDivisor(fresh->milliseconds, divisor_, kPictureBudgetMs);
     if (!fresh->remark.empty() && (!picture || picture->remark != fresh->remark)) say(fresh->remark);
@@ -157,6 +157,7 @@ bool App::turn(double seconds, const Controls& controls) {
                         now.reference == wanted_->reference;
   if (!sameLook) {
     worker_.want(now);
+    status.idle = false;
     wanted_ = now;
     changed = true;
   }

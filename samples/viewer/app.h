@@ -26,6 +26,8 @@ class App {
   bool turn(double seconds, const Controls& controls);
   /// Something moves by itself: more turns are due soon.
   bool isAnimating() const;
+  /// Nothing moves; what is wanted is shown and written, or said to be impossible.
+  bool isSettled() const { return !isAnimating() && status.idle; }
 
   // Files dropped onto the window, keys and buttons.
   void open(const std::string& sceneOrFile);  ///< .gltf, .glb, builtin:…; .exr: the picture to compare with; .json: views

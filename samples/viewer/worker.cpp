@@ -49,6 +49,7 @@ void Worker::save(const std::string& path) {
 Worker::Status Worker::status() {
   const std::lock_guard lock(mutex_);
   Status status = status_;
+  status.idle = status_.doing.empty() && shownVersion_ == wantedVersion_ && toSave_.empty();
   status_.saved.clear();
   return status;
 }

@@ -25,6 +25,7 @@ class Worker {
   struct Status {
     std::string doing;  ///< node or phase; empty: idle
     double fraction = 0;
+    bool idle = true;                           ///< the newest view is shown in full (or `error` says why not), and all is written
     std::string error;                          ///< why the newest view is not shown, one line
     std::vector<std::string> saved;             ///< paths written, or lines that say why not, since the last status
     std::shared_ptr<const scene::Scene> scene;  ///< loaded

@@ -52,7 +52,15 @@ std::vector<openvdb::GridBase::Ptr> readGrids(const std::string& file) {
   openvdb::initialize();
   std::vector<openvdb::GridBase::Ptr> grids;
   if (std::filesystem::path(file).extension() == ".nvdb") {
-    for (const auto& handle : nanovdb::io::readGrids(file)) grids.push_back(nanovdb::nanoToOpenVDB(handle));
+    for (const auto& handle : nanovdb::io::readGrids(file)) {
+      if (const auto* floats = handle.grid<float>()) {
+        grids.push_back(nanovdb::nanoToOpenVDB(*floats));
+      } else if (const auto* integers = handle.grid<int32_t>()) {
+        grids.push_back(nanovdb::nanoToOpenVDB(*integers));
+      } else {
+        grids.push_back(nanovdb::nanoToOpenVDB(*handle.grid<nanovdb::Vec3f>()));
+      }
+    }
     return grids;
   }
   openvdb::io::File vdb(file);

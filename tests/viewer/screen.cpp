@@ -6,7 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -97,15 +99,33 @@ bool Screen::wait(double seconds, const std::function<bool(const viewer::Pixels&
   return false;
 }
 
-viewer::Pixels Screen::settle(uint32_t width, uint32_t height, double stillSeconds, double seconds) const {
+std::string Screen::title() const {
+  FILE* pipe = ::popen(("DISPLAY=" + display_ + " timeout 20 xdotool search --name radivox getwindowname 2>/dev/null").c_str(), "r");
+  if (pipe == nullptr) return "";
+  std::array<char, 256> line{};
+  const bool has = std::fgets(line.data(), line.size(), pipe) != nullptr;
+  ::pclose(pipe);
+  std::string title = has ? line.data() : "";
+  if (!title.empty() && title.back() == '\n') title.pop_back();
+  return title;
+}
+
+viewer::Pixels Screen::settle(uint32_t width, uint32_t height, const std::function<bool(const viewer::Pixels&)>& holds,
+                              double seconds) const {
+  constexpr double kStillSeconds = 1.0;
   const double end = now() + seconds;
   viewer::Pixels last = shot();
   double since = now();
-  while (now() < end && now() - since < stillSeconds) {
+  while (now() < end && now() - since < kStillSeconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const std::string name = title();
     viewer::Pixels next = shot();
+    const bool isWorking = name.empty() || name.find(", ") != std::string::npos;
     // The status line at the top counts on.
-    if (next.width == 0 || last.width == 0 || shareThatDiffers(last, next, 0, 24, width, height - 24) > 0) since = now();
+    if (isWorking || next.width == 0 || last.width == 0 || (holds && !holds(next)) ||
+        shareThatDiffers(last, next, 0, 24, width, height - 24) > 0) {
+      since = now();
+    }
     last = std::move(next);
   }
   return last;

@@ -26,8 +26,12 @@ class Screen {
   bool act(const std::string& words) const;
   /// Waits until `holds` of a shot; false after `seconds`.
   bool wait(double seconds, const std::function<bool(const viewer::Pixels&)>& holds) const;
-  /// Waits until nothing in the rectangle has changed for a while, and returns the last shot.
-  viewer::Pixels settle(uint32_t width, uint32_t height, double stillSeconds = 1.0, double seconds = 60) const;
+  /// Of the first window whose name contains "radivox"; empty: none.
+  std::string title() const;
+  /// Waits until `holds` of a shot, the window's title says that nothing is under way, and the rectangle has been still for a second.
+  /// Returns the last shot; `seconds` is for a machine that does much else besides.
+  viewer::Pixels settle(uint32_t width, uint32_t height, const std::function<bool(const viewer::Pixels&)>& holds = nullptr,
+                        double seconds = 120) const;
 
  private:
   std::filesystem::path folder_;

@@ -6,6 +6,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "engine/error.h"
@@ -76,12 +78,21 @@ PresenterOptions presenterOptions(GLFWwindow* window, const cli::Options& option
   return presenter;
 }
 
+/// "radivox: cornell, visibility 40 %" while something is under way, for task bars too; "radivox: cornell" when the picture is the one wanted.
+std::string titleOf(const App& app) {
+  std::string title = "radivox: " + std::filesystem::path(app.scene).filename().string();
+  if (app.isSettled()) return title;
+  if (app.status.doing.empty()) return title + ", working";
+  return title + ", " + app.status.doing + " " + std::to_string(std::lround(app.status.fraction * 100)) + " %";
+}
+
 /// Turns of the event loop until the window closes. Nothing in it waits but for events.
 int runLoop(GLFWwindow* window, App& app, Gui& gui, Events& events, Presenter& presenter, LoopReport& report) {
   double lastInput = glfwGetTime(), lastFrame = 0, lastTurn = lastInput;
   // Before the first turn, so that the first picture is asked for at the size it is shown.
   ImGui_ImplGlfw_NewFrame();
   presenter.show(gui.draw(app));
+  std::string title;
   bool due = true;  // a frame would show something new
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !gui.wantsToQuit()) {
     if (cli::isInterrupted()) return cli::kInterruptedExitCode;
@@ -95,6 +106,7 @@ int runLoop(GLFWwindow* window, App& app, Gui& gui, Events& events, Presenter& p
     if (std::exchange(events.any, false)) lastInput = now;
     due = app.turn(now - lastTurn, gui.controls()) || due;
     lastTurn = now;
+    if (std::string text = titleOf(app); text != title) glfwSetWindowTitle(window, (title = std::move(text)).c_str());
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     const bool wanted = due || app.isAnimating() || now - lastInput < kAfterInputSeconds;
