@@ -72,8 +72,8 @@ typedef struct RadivoxAdoptInfo {
   VkInstance instance;
   VkPhysicalDevice physicalDevice;
   VkDevice device;
-  VkQueue
-      queue; /* left alone by you while radivoxRun, radivoxCreateRenderer, radivoxSetLights, radivoxSetGeometry and radivoxWritePicture work */
+  /* Left alone by you while radivoxRun, radivoxCreateRenderer, radivoxSetLights, radivoxSetGeometry and radivoxWritePicture work. */
+  VkQueue queue;
   const VkPhysicalDeviceFeatures2* enabledFeatures; /* as you gave it to vkCreateDevice; NULL: as radivoxNeededFeatures has it */
   const char* const* extensions;                    /* those you enabled */
   uint32_t extensionCount;
