@@ -12,3 +12,8 @@ function(radivox_target name)
     target_link_options(${name} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
+
+# For targets whose own code takes no time worth naming: optimizing it would take half of the time to build it.
+function(radivox_compile_fast name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Og>)
+endfunction()

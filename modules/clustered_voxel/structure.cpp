@@ -15,6 +15,12 @@ void declareStructure(graph::Declaration& d) {
   d.read("voxels", "packed coordinate of each voxel");
 }
 
+void readEmission(graph::Declaration& d, const char* name, const char* meaning) {
+  d.readIf(d.traits.hasEmissionByRays(), name, meaning,
+           d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters have samples with shadow maps")
+      .optional = true;
+}
+
 void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline, std::initializer_list<gpu::BoundResource> rest) {
   constexpr size_t kMost = 32;
   assert(6 + rest.size() <= kMost);

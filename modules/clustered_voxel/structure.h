@@ -9,6 +9,9 @@ namespace radivox::clustered_voxel {
 /// Reads grid, occupancy, rank, mask, first, faces, and voxels (not among the six bindings).
 void declareStructure(graph::Declaration& d);
 
+/// Declares an optional read that is unwanted where no emitter lights by rays (Traits::emittersByRays).
+void readEmission(graph::Declaration& d, const char* name, const char* meaning);
+
 /// Binds the six, then `rest` from binding 6 on.
 void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline, std::initializer_list<gpu::BoundResource> rest);
 

@@ -12,7 +12,7 @@
 // Light counts only where it meets the viewer's side, by shading and by geometric normal.
 // Emitters: at most `closed_form` emissive triangles are summed in closed form, times the visible share Σ w V / Σ w over the emitter
 // samples, w = a sample's unshadowed irradiance: exact without occluders, and not singular near an emitter. Above that, the samples alone.
-// Where emitters have no samples (emittersByRays) `emitted` is added if connected. Else the closed form is used unshadowed, its form
+// Where emitters have no samples (emittersByRays) `emitted` is added if connected, as in the graph of the pixel receiver. Else the closed form is used unshadowed, its form
 // factors normalised to at most 1: exact inside convex emitters (a furnace), too bright behind occluders; the plan and the figure
 // `emitters_unshadowed` say so.
 #pragma once

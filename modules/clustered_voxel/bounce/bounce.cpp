@@ -77,6 +77,9 @@ void Bounce::declare(graph::Declaration& d) {
   d.read("direct_radiosity", "reflected direct light of each cluster, W/m²", graph::UseCompute | graph::UseTransfer);
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");
   d.write("face_radiosity", Shape::buffer(12, Extent::of("faces")), "reflected radiosity, W/m²");
+  d.write("cluster_emission", Shape::buffer(12, Extent::of("clusters")),
+          "mean B_e of each cluster, W/m²; made where emitters light by rays")
+      .optional = !emits;
   d.readBack("status", Shape::buffer(4, 4),
              "iterations; residual (float bits); 1: fell back; 1: residual reached, 2: rounding, 0: neither");
   d.scratch("control", Shape::buffer(sizeof(BounceControl), 1), "state of the solver",
@@ -88,7 +91,6 @@ void Bounce::declare(graph::Declaration& d) {
     d.scratch("steps", Shape::buffer(12, Extent::of("clusters")), "last change of B");
   }
   if (emits) {
-    d.scratch("mean_emission", Shape::buffer(12, Extent::of("clusters")), "B_e of clusters");
     d.scratch("received", Shape::buffer(12, Extent::of("clusters")), "E_emit = F B_e");
   }
 }
@@ -172,7 +174,7 @@ void Bounce::record(graph::RecordContext& context) {
 
 void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& push) const {
   gpu::Commands& commands = context.commands();
-  const gpu::Buffer& mean = context.buffer("mean_emission");
+  const gpu::Buffer& mean = context.buffer("cluster_emission");
   commands.bind(meanEmission_, {context.buffer("clusters"), context.buffer("members"), context.buffer("faces"), context.buffer("emission"),
                                 mean, context.buffer(context.has("weights") ? "weights" : "members")});
   commands.push(push);
@@ -190,7 +192,7 @@ void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_
   const gpu::Buffer& none = indirect;  // bound where the shader reads nothing
   const bool hasRows = context.has("visibility_entries");
   const gpu::Buffer& received = push.hasEmission != 0 ? context.buffer("received") : none;
-  const gpu::Buffer& emission = push.hasEmission != 0 ? context.buffer("mean_emission") : none;
+  const gpu::Buffer& emission = push.hasEmission != 0 ? context.buffer("cluster_emission") : none;
   // Where bounces are counted, faces receive the last one in place of the clusters: from what these sent before their last sweep.
   const bool counted = hasRows && sweeps > 0;
   push.senders = counted && (sweeps - 1) % 2 != 0 ? push.clusterCount : 0;

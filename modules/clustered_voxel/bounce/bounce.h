@@ -6,6 +6,7 @@
 //         face_irradiance and direct_radiosity of inject; emission where emitters light through rays (Traits::emittersByRays)
 // writes  cluster_radiosity  vec3 × C  reflected B, W/m², without emission; 0: black or unlit
 //         face_radiosity     vec3 × F  likewise: ρ_s (E_dir,s + E_emit + E_ind), direct light at the detail of faces
+//         cluster_emission   vec3 × C  mean B_e, W/m²; made where emitters light through rays
 //         status             u32 × 4   (read back) iterations; residual as float bits; 1: fell back to plain steps; why it ended
 // runs    when the light, the matrix or the clusters change
 // cost    an iteration is a pass over the matrix (4 B an entry); recorded `iterations` times, those after the end dispatch nothing;

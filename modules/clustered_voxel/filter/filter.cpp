@@ -29,6 +29,11 @@ void Filter::declare(graph::Declaration& d) {
   graph::Port& filteredSky = d.write("sky", Shape::buffer(16, Extent::of("faces")), "E_sky, W/m², filtered, of a sky with an image");
   filteredSky.persistent = true;
   filteredSky.optional = true;
+  readEmission(d, "gathered_emitted", "irradiance of each face straight from emitters, W/m²");
+  graph::Port& filteredEmitted =
+      d.write("emitted", Shape::buffer(16, Extent::of("faces")), "irradiance straight from emitters, W/m², filtered");
+  filteredEmitted.persistent = true;
+  filteredEmitted.optional = true;
   d.read("cluster_radiosity", "only its version: the light changed");
   d.read("row_start", "only its version: the rays changed");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m², filtered; a: sky visibility").persistent = true;
@@ -43,6 +48,7 @@ void Filter::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   faces_.prepare(device);
   hasSky_ = context.has("sky") && context.has("gathered_sky") && context.has("scene.sky");
+  hasEmitted_ = context.has("emitted") && context.has("gathered_emitted");
   filter_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/filter/filter.comp",
                                                            .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                            .pushConstantBytes = 12,
@@ -55,9 +61,14 @@ void Filter::record(graph::RecordContext& context) {
                      context.changed("faces") || (hasSky_ && context.changed("scene.sky"));
   if (!faces_.record(context, context.buffer("shown"), false, stale)) return;
   recordPasses(context, context.buffer("gathered"), context.buffer("irradiance"));
-  if (!hasSky_) return;
-  commands.barrier();
-  recordPasses(context, context.buffer("gathered_sky"), context.buffer("sky"));
+  if (hasSky_) {
+    commands.barrier();
+    recordPasses(context, context.buffer("gathered_sky"), context.buffer("sky"));
+  }
+  if (hasEmitted_) {
+    commands.barrier();
+    recordPasses(context, context.buffer("gathered_emitted"), context.buffer("emitted"));
+  }
 }
 
 void Filter::recordPasses(graph::RecordContext& context, const gpu::Buffer& gathered, const gpu::Buffer& filtered) {

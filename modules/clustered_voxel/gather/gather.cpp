@@ -1,6 +1,7 @@
 #include "modules/clustered_voxel/gather/gather.h"
 
 #include "modules/clustered_voxel/sky/sky.h"
+#include "modules/clustered_voxel/structure.h"
 #include "shaders/shared/voxel.h"
 
 namespace radivox::clustered_voxel {
@@ -36,6 +37,11 @@ void Gather::declare(graph::Declaration& d) {
   graph::Port& sky = d.write("sky", Shape::buffer(16, Extent::of("faces")), "E_sky, W/m², of a sky with an image");
   sky.persistent = true;
   sky.optional = true;
+  readEmission(d, "emission", "mean B_e of each face, W/m²");
+  readEmission(d, "cluster_emission", "mean B_e of each cluster, W/m²");
+  graph::Port& emitted = d.write("emitted", Shape::buffer(16, Extent::of("faces")), "irradiance straight from emitters, W/m²");
+  emitted.persistent = true;
+  emitted.optional = true;
   graph::Port& error = d.write("error", Shape::buffer(12, Extent::of("faces")), "standard error of E_indirect, W/m²");
   error.persistent = true;
   error.optional = true;
@@ -46,13 +52,15 @@ void Gather::prepare(graph::PrepareContext& context) {
   constexpr auto kB = BindingType::StorageBuffer;
   gpu::Device& device = context.device();
   hasSky_ = context.has("sky") && context.has("scene.sky");
+  hasEmitted_ = context.has("emitted") && context.has("emission") && context.has("cluster_emission");
   faces_.prepare(device);
-  gather_ = gpu::Pipeline(
-      device, gpu::ComputePipelineInfo{
-                  .shader = "clustered_voxel/gather/gather.comp",
-                  .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                  .pushConstantBytes = 8,
-                  .constants = {{0, static_cast<uint32_t>(estimator_)}, {1, context.has("error") ? 1u : 0u}, {2, hasSky_ ? 1u : 0u}}});
+  gather_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather/gather.comp",
+                                                           .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                           .pushConstantBytes = 8,
+                                                           .constants = {{0, static_cast<uint32_t>(estimator_)},
+                                                                         {1, context.has("error") ? 1u : 0u},
+                                                                         {2, hasSky_ ? 1u : 0u},
+                                                                         {3, hasEmitted_ ? 1u : 0u}}});
 }
 
 void Gather::record(graph::RecordContext& context) {
@@ -63,13 +71,16 @@ void Gather::record(graph::RecordContext& context) {
   const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("face_radiosity") ||
                      context.changed("entries") || context.changed("row_start") || context.changed("chunk_table") ||
                      context.changed("faces") || context.changed("clusters") || context.changed("voxels") ||
-                     (hasSky_ && (context.changed("scene.sky") || context.changed("scene.info")));
+                     (hasSky_ && (context.changed("scene.sky") || context.changed("scene.info"))) ||
+                     (hasEmitted_ && (context.changed("emission") || context.changed("cluster_emission")));
   if (!faces_.record(context, context.buffer("needed"), !lazy_, stale)) return;
-  commands.bind(gather_, {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"),
-                          context.buffer("clusters"), context.buffer("cluster_radiosity"), context.buffer("face_radiosity"),
-                          context.buffer("faces"), context.buffer("voxels"), context.buffer("irradiance"),
-                          context.buffer(context.has("error") ? "error" : "irradiance"), context.buffer(hasSky_ ? "scene.sky" : "faces"),
-                          context.buffer(hasSky_ ? "scene.info" : "faces"), context.buffer(hasSky_ ? "sky" : "irradiance")});
+  commands.bind(gather_,
+                {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("clusters"),
+                 context.buffer("cluster_radiosity"), context.buffer("face_radiosity"), context.buffer("faces"), context.buffer("voxels"),
+                 context.buffer("irradiance"), context.buffer(context.has("error") ? "error" : "irradiance"),
+                 context.buffer(hasSky_ ? "scene.sky" : "faces"), context.buffer(hasSky_ ? "scene.info" : "faces"),
+                 context.buffer(hasSky_ ? "sky" : "irradiance"), context.buffer(hasEmitted_ ? "emission" : "faces"),
+                 context.buffer(hasEmitted_ ? "cluster_emission" : "faces"), context.buffer(hasEmitted_ ? "emitted" : "irradiance")});
   struct {
     uint32_t clusterCount, faceCount;
   } push{static_cast<uint32_t>(context.count("clusters")), faceCount};

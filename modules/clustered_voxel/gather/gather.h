@@ -1,8 +1,9 @@
 // clustered_voxel.gather — irradiance of the voxel faces that the view needs, and of no others.
 //
-// reads   needed; visibility row_start, entries, chunk_table; clusters, cluster_radiosity, face_radiosity; faces, voxels; scene.sky?, scene.info?
+// reads   needed; visibility row_start, entries, chunk_table; clusters, cluster_radiosity, face_radiosity; faces, voxels; scene.sky?, scene.info?; emission?, cluster_emission?
 // writes  irradiance* vec4 × F  E_indirect, W/m²; a: sky visibility, the share of rays that left the scene; meaningful where valid
 //         sky*        vec4 × F  E_sky, W/m², only where the sky has an image; elsewhere it is π L × sky visibility
+//         emitted*    vec4 × F  irradiance straight from emitters, W/m², only where these light by rays (Traits::emittersByRays): Σ (m/M) B_e
 //         valid*      bits × F  the face has been gathered under the present light
 //         error*      vec3 × F  standard error of E_indirect, W/m², from the spread of its M rays as if they were independent: they are stratified,
 //                               so sampling errs less; what voxels and clusters leave out is not in it. Made only if read; counted only
@@ -32,7 +33,7 @@ class Gather : public graph::Node {
 
  private:
   Estimator estimator_ = Estimator::Counted;
-  bool lazy_ = true, hasSky_ = false;
+  bool lazy_ = true, hasSky_ = false, hasEmitted_ = false;
   params::Table table_;
   LazyFaces faces_;
   gpu::Pipeline gather_;

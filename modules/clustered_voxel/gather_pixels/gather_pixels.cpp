@@ -84,6 +84,12 @@ void GatherPixels::declare(graph::Declaration& d) {
   readSkyImage(d);
   readUnderImage(d, "scene.info", "sky radiance");
   d.write("sky", image, "E_sky, W/m², of a sky with an image; 0 on the sky").optional = true;
+  readEmission(d, "emission", "mean B_e of each face, W/m²");
+  d.write("emitted", image, "irradiance from emitters, found by the rays, W/m²; 0 on the sky").optional = true;
+  if (d.traits.hasEmissionByRays()) {
+    d.scratch("raw_emitted", image, "the emitters' from each pixel's own rays");
+    if (smooth_ > 0) d.scratch("between_emitted", image, "the emitters' between filter passes");
+  }
   if (d.traits.skyImage) {
     d.scratch("raw_sky", image, "E_sky from each pixel's own rays");
     if (smooth_ > 0) d.scratch("between_sky", image, "E_sky between filter passes");
@@ -103,20 +109,22 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
   hasShadow_ = context.has("shadow_depth");
   hasSky_ = context.has("sky") && context.has("scene.sky");
+  hasEmitted_ = context.has("emitted") && context.has("emission");
   std::vector<BindingType> bindings(32, kB);
   for (const size_t map : {25, 26, 28}) bindings[map] = BindingType::SampledImage;
-  for (const size_t image : {6, 7, 11, 15, 31}) bindings[image] = kI;
+  for (const size_t image : {6, 7, 11, 15, 30, 31}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
                                                           .bindings = bindings,
-                                                          .pushConstantBytes = 32,
+                                                          .pushConstantBytes = 48,
                                                           .constants = {{0, skip},
                                                                         {1, hasTriangles_ ? 1u : 0u},
                                                                         {2, isMasked_ ? 1u : 0u},
                                                                         {3, hasShadow_ ? 1u : 0u},
                                                                         {4, context.has("corners") ? 1u : 0u},
                                                                         {5, context.has("sky_irradiance") ? 1u : 0u},
-                                                                        {6, hasSky_ ? 1u : 0u}}});
+                                                                        {6, hasSky_ ? 1u : 0u},
+                                                                        {7, hasEmitted_ ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
@@ -134,14 +142,16 @@ void GatherPixels::record(graph::RecordContext& context) {
     uint32_t width, height, rays, voxelCount;
     float near;
     uint32_t lightCount;
-    VkDeviceAddress sky;
+    VkDeviceAddress sky, skyInfo, emission;
   } push{raw.info().width,
          raw.info().height,
          rays_,
          static_cast<uint32_t>(context.count("voxels")),
          near_,
          hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u,
-         hasSky_ ? context.buffer("scene.sky").address() : 0};
+         hasSky_ ? context.buffer("scene.sky").address() : 0,
+         hasSky_ ? context.buffer("scene.info").address() : 0,
+         hasEmitted_ ? context.buffer("emission").address() : 0};
   // No planes where there are no voxels.
   const std::vector<const gpu::Buffer*> planes = context.grown("planes");
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
@@ -178,7 +188,7 @@ void GatherPixels::record(graph::RecordContext& context) {
                  optional("face_irradiance", hasShadow_),
                  context.has("corners") ? context.image("corners") : absent_,
                  optional("sky_irradiance", context.has("sky_irradiance")),
-                 optional("scene.info", hasSky_),
+                 hasEmitted_ ? context.image("raw_emitted") : absent_,
                  hasSky_ ? context.image("raw_sky") : absent_});
   commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
@@ -187,6 +197,7 @@ void GatherPixels::record(graph::RecordContext& context) {
 
   filter(context, "raw", "between", "irradiance");
   if (hasSky_) filter(context, "raw_sky", "between_sky", "sky");
+  if (hasEmitted_) filter(context, "raw_emitted", "between_emitted", "emitted");
 }
 
 void GatherPixels::filter(graph::RecordContext& context, const char* raw, const char* between, const char* outName) {

@@ -2,10 +2,12 @@
 //
 // reads   gbuffer position, normal, triangle; the voxel structure and distance; planes, plane_extras, clearance? of visibility; face_radiosity;
 //         triangle_first, triangle_ids, corners? of triangles and scene geometry (near > 0); shadow_depth, shadow_triangle, face_irradiance, scene.lights,
-//         .shadow_views (shadow=on, where no surface emits); sky_irradiance (and there is a sky)
+//         .shadow_views (shadow=on, where no surface emits); sky_irradiance (and there is a sky); emission of surface (emitters by rays)
 // writes  irradiance image RGBA32F  E_indirect at the pixel's surface, W/m²; a: sky visibility; 0 on the sky
 //         sky?       image RGBA32F  E_sky at the pixel's surface, W/m², where the sky has an image: each ray that leaves the scene sees the mean of
 //                                   the image about it (scene.sky, scene.info); elsewhere π L × sky visibility is that
+//         emitted?   image RGBA32F  irradiance that emitters bring straight, W/m², where they light by rays (Traits::emittersByRays): each
+//                                   ray that ends on a face brings its B_e. For direct.emitted, which else has them without shadows
 // runs    when the view, the voxels or the radiosity change
 // cost    pixels × rays grid walks, the first voxels of each against the triangles in them; one pass of 25 reads a pixel (and 25 more a `smooth` pass)
 // source  beyond the paper (METHODS section 1, "The receiver is where the error sits"): irradiance interpolated over voxels loses
@@ -37,7 +39,8 @@ class GatherPixels : public graph::Node {
   float near_ = 2.f;
   bool shadow_ = true;
   bool hasTriangles_ = false, isMasked_ = false, hasShadow_ = false;
-  bool hasSky_ = false;  ///< with an image
+  bool hasSky_ = false;      ///< with an image
+  bool hasEmitted_ = false;  ///< emitters light by rays
   void filter(graph::RecordContext& context, const char* raw, const char* between, const char* out);
 
   params::Table table_;

@@ -25,6 +25,10 @@ void Shade::declare(graph::Declaration& d) {
   d.write("sky", Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height")),
           "E_sky, W/m², of a sky with an image; 0 on the sky")
       .optional = true;
+  readEmission(d, "filtered_emitted", "irradiance of each face straight from emitters, W/m²");
+  d.write("emitted", Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height")),
+          "irradiance straight from emitters, W/m², where these light by rays; 0 on the sky")
+      .optional = true;
   // Its source is read only where the picture is wanted.
   const bool wantsError = d.request.aovs.count("error") != 0;
   graph::Port& source = d.read("face_error", "standard error of E_indirect of each face, W/m²");
@@ -38,15 +42,18 @@ void Shade::declare(graph::Declaration& d) {
 
 void Shade::prepare(graph::PrepareContext& context) {
   hasSky_ = context.has("sky") && context.has("filtered_sky");
+  hasEmitted_ = context.has("emitted") && context.has("filtered_emitted");
   wantsError_ = context.has("error") && context.has("face_error");
   constexpr auto kB = BindingType::StorageBuffer;
   constexpr auto kI = BindingType::StorageImage;
   shade_ = gpu::Pipeline(
-      context.device(), gpu::ComputePipelineInfo{
-                            .shader = "clustered_voxel/shade/shade.comp",
-                            .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kI, kB, kI, kB, kI},
-                            .pushConstantBytes = 8,
-                            .constants = {{0, static_cast<uint32_t>(interpolation_)}, {1, wantsError_ ? 1u : 0u}, {2, hasSky_ ? 1u : 0u}}});
+      context.device(),
+      gpu::ComputePipelineInfo{
+          .shader = "clustered_voxel/shade/shade.comp",
+          .bindings = {kB, kB, kB, kB, kB, kB, kI, kI, kB, kB, kI, kB, kI, kB, kI, kB, kI},
+          .pushConstantBytes = 8,
+          .constants = {
+              {0, static_cast<uint32_t>(interpolation_)}, {1, wantsError_ ? 1u : 0u}, {2, hasSky_ ? 1u : 0u}, {3, hasEmitted_ ? 1u : 0u}}});
 }
 
 void Shade::record(graph::RecordContext& context) {
@@ -58,7 +65,8 @@ void Shade::record(graph::RecordContext& context) {
   bindStructure(context, shade_,
                 {context.image("position"), context.image("normal"), context.buffer("filtered"), context.buffer("valid"), out,
                  context.buffer(wantsError_ ? "face_error" : "filtered"), wantsError_ ? context.image("error") : out,
-                 context.buffer(hasSky_ ? "filtered_sky" : "filtered"), hasSky_ ? context.image("sky") : out});
+                 context.buffer(hasSky_ ? "filtered_sky" : "filtered"), hasSky_ ? context.image("sky") : out,
+                 context.buffer(hasEmitted_ ? "filtered_emitted" : "filtered"), hasEmitted_ ? context.image("emitted") : out});
   commands.push(push);
   commands.dispatchItems(uint64_t{push.width} * push.height, 64);
 }

@@ -26,6 +26,10 @@ layout(constant_id = 2) const bool kSky = false;  // the sky has an image
 layout(set = 0, binding = 11, scalar) readonly buffer SkyBuffer { vec3 sky[]; };  // kSkyBinCount means
 layout(set = 0, binding = 12, scalar) readonly buffer Info { SceneInfo info; };
 layout(set = 0, binding = 13, scalar) buffer SkyIrradianceBuffer { vec4 skyIrradiance[]; };
+layout(constant_id = 3) const bool kEmitted = false;  // emitters light by rays
+layout(set = 0, binding = 14, scalar) readonly buffer Emission { vec3 emission[]; };
+layout(set = 0, binding = 15, scalar) readonly buffer ClusterEmission { vec3 clusterEmission[]; };
+layout(set = 0, binding = 16, scalar) writeonly buffer EmittedBuffer { vec4 emitted[]; };
 layout(push_constant, scalar) uniform Push {
   uint clusterCount;
   uint faceCount;
@@ -46,7 +50,7 @@ void main() {
   VisibilityRow row = openRow(chunkTable[s / kRowsPerChunk], rowStart[rowSlot(s)], rowStart[rowSlot(s) + 1]);
   vec3 sum = vec3(0.0);
   vec3 squares = vec3(0.0);
-  vec3 skySum = vec3(0.0);
+  vec3 skySum = vec3(0.0), emittedSum = vec3(0.0);
   uint rays = 0, misses = 0;
   // differential: the receiver is the voxel face's centre and axis
   uint f = faces[s].key & 7u;
@@ -80,11 +84,13 @@ void main() {
       }
     }
     sum += weight * b;
+    if (kEmitted) emittedSum += float(count) * (id < clusterCount ? clusterEmission[id] : emission[id - clusterCount]);
     if (kError) squares += weight * b * b;
   }
   float share = rays > 0u ? 1.0 / float(rays) : 0.0;
   irradiance[s] = vec4(kEstimator == 1 ? sum : sum * share, float(misses) * share);
   if (kSky) skyIrradiance[s] = vec4(3.14159265358979 * share * (skySum + float(misses) * info.skyRadiance), 0.0);
+  if (kEmitted) emitted[s] = vec4(share * emittedSum, 0.0);
   if (kError) {
     // Of the mean of M independent rays: √((mean of squares − square of the mean) / (M − 1)).
     vec3 mean = sum * share;

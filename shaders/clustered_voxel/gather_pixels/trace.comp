@@ -46,8 +46,11 @@ layout(set = 0, binding = 29, scalar) readonly buffer SkyIrradiance { vec3 skyIr
 layout(constant_id = 6) const bool kSkyImage = false;
 // By address: there are 32 bindings at most.
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SkyValues { vec3 values[]; };
-layout(set = 0, binding = 30, scalar) readonly buffer Info { SceneInfo info; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer InfoAt { SceneInfo info; };
 layout(set = 0, binding = 31, rgba32f) writeonly uniform image2D rawSkyImage;
+layout(constant_id = 7) const bool kEmitted = false;  // emitters light through these rays, and no other way
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Emission { vec3 of[]; };
+layout(set = 0, binding = 30, rgba32f) writeonly uniform image2D rawEmittedImage;
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
@@ -56,6 +59,8 @@ layout(push_constant, scalar) uniform Push {
   float nearDistance;  // voxels
   uint lightCount;
   uvec2 sky;           // address of scene.sky
+  uvec2 skyInfo;       // of scene.info
+  uvec2 emission;      // of B_e of each face
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_walk.glsl"
@@ -122,7 +127,7 @@ void main() {
   vec2 shift = vec2(uvec2(hashed, hashBits(hashed)) >> 8) * (1.0 / 16777216.0);
 
   vec4 sum = vec4(0.0);
-  vec3 skySum = vec3(0.0);
+  vec3 skySum = vec3(0.0), emittedSum = vec3(0.0);
   for (uint ray = 0u; subgroupAny(ray < end); ++ray) {
     bool busy = ray < end;
     vec2 square = fract(directions[place * rays + min(ray, rays - 1u)] + shift);
@@ -143,10 +148,15 @@ void main() {
       }
     }
     sum.xyz += isFace ? radiosity : vec3(0.0);
+    if (kEmitted && isFace) emittedSum += Emission(emission).of[face];
     bool missed = busy && hit.face == kHitNothing;
     sum.w += missed ? 1.0 : 0.0;
-    if (kSkyImage && missed) skySum += info.skyRadiance + SkyValues(sky).values[skyCell(way.direction, info.skyTurn)];
+    if (kSkyImage && missed) {
+      SceneInfo info = InfoAt(skyInfo).info;
+      skySum += info.skyRadiance + SkyValues(sky).values[skyCell(way.direction, info.skyTurn)];
+    }
   }
   if (kSkyImage && isPixel) imageStore(rawSkyImage, ivec2(pixel), vec4(end > 0u ? 3.14159265358979 / float(rays) * skySum : vec3(0.0), 0.0));
+  if (kEmitted && isPixel) imageStore(rawEmittedImage, ivec2(pixel), vec4(end > 0u ? emittedSum / float(rays) : vec3(0.0), 0.0));
   if (isPixel) imageStore(rawImage, ivec2(pixel), end > 0u ? sum / float(rays) : vec4(0.0));
 }
