@@ -5,6 +5,7 @@
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #extension GL_KHR_shader_subgroup_vote : require
+#include "shared/listed_triangle.h"
 #include "shared/texture.glsl"
 #include "shared/traversal.glsl"
 #include "shared/triangle_corners.h"
@@ -73,26 +74,29 @@ bool meetsTriangle(TraversalRay ray, uint id, float least, float most, out float
 // Returns whether there is one. Lanes stay together; those without `live` test nothing.
 //
 // `lift`: how far the ray's origin was lifted off its own surface. In a corner it may lie behind the other wall all the same, by rounding: triangles
-// up to half of that behind it still stop the ray.
+// up to half of that behind it still stop the ray. `apart`: listedApart of the entry.
 bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, bool live, uint voxel, uint own, float lift, out float time, out vec3 normal,
-                     out uint triangle) {
+                     out uint triangle, out uint apart) {
   vec3 exits = traversalExits(ray, cursor.voxel);
   time = min(exits.x, min(exits.y, exits.z)) + kNearSlack;
   float least = max(cursor.time - kNearSlack, -0.5 * lift);
   bool found = false;
   normal = vec3(0.0);
   triangle = 0u;
+  apart = 0u;
   uint at = triangleFirst[live ? voxel : 0u];
   uint end = live ? triangleFirst[voxel + 1u] : at;
   for (; subgroupAny(at < end); ++at) {
     bool test = at < end;
-    uint id = test ? triangleIds[at] : 0u;
+    uint entry = test ? triangleIds[at] : 0u;
+    uint id = listedTriangle(entry);
     float t;
     vec3 n;
     if (meetsTriangle(ray, id, least, time, t, n) && test && id != own) {
       time = t;
       found = true;
       triangle = id;
+      apart = listedApart(entry);
       normal = triangleDot(n, ray.direction) > 0.0 ? -n : n;
     }
   }

@@ -6,11 +6,14 @@
 #include "shared/voxel_triangles.glsl"
 
 // The face of `voxel` that stands for surface with unit normal n, drawn with probability n_k²: a face of another axis is mostly other surface's.
-// kHitBack: it has none.
-uint faceTowards(uint voxel, vec3 n, uint random) {
+// kHitBack: it has none. `apart`: faces that the surface is no part of, unless it has no others.
+uint faceTowards(uint voxel, vec3 n, uint apart, uint random) {
   uint mask = planes[voxel].x >> 26;
   uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
-  precise vec3 w = n * n * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
+  precise vec3 squares = n * n;
+  uint kept = mask & ~apart;
+  precise vec3 w = squares * vec3((kept >> facing.x) & 1u, (kept >> facing.y) & 1u, (kept >> facing.z) & 1u);
+  if (w.x + w.y + w.z == 0.0) w = squares * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
   precise float two = w.x + w.y;
   precise float total = two + w.z;
   precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
@@ -45,10 +48,10 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
     voxel = looking ? voxel : 0u;
     float time;
     vec3 normal;
-    uint triangle;
-    if (nearestTriangle(way, cursor, looking, voxel, own, lift, time, normal, triangle)) {
+    uint triangle, apart;
+    if (nearestTriangle(way, cursor, looking, voxel, own, lift, time, normal, triangle, apart)) {
       precise vec3 unit = normal * preciseInverseSqrt(max(triangleDot(normal, normal), 1e-30));
-      result = WalkHit(faceTowards(voxel, unit, random), time, triangle, unit);
+      result = WalkHit(faceTowards(voxel, unit, apart, random), time, triangle, unit);
       looking = going = false;
     }
     bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "shaders/shared/listed_triangle.h"
 #include "shaders/shared/voxel_codec.h"
 #include "tests/clustered_voxel/voxel_run.h"
 #include "tests/oracles/gpu_fixture.h"
@@ -25,8 +26,26 @@ class TrianglesTest : public oracles::GpuTest {};
 struct Lists {
   shared::Grid grid{};
   std::vector<uint32_t> voxels, first, ids;
+  std::vector<uint32_t> apart;  // listedApart of each entry
   std::vector<glm::uvec2> pieces;
 };
+
+Lists listsOf(Pipeline& p) {
+  Lists lists;
+  lists.grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
+  lists.voxels = p.buffer<uint32_t>("index.voxels", p.count("voxels"));
+  lists.first = p.buffer<uint32_t>("triangles.first", p.count("voxels") + 1);
+  const size_t entries = p.count("triangle_entries");
+  if (entries == 0) return lists;
+  const auto words = gpu::downloadAs<uint32_t>(oracles::sharedDevice(), *p.executor->findGrown("triangles.ids").at(0), entries);
+  for (const uint32_t word : words) {
+    lists.ids.push_back(shared::listedTriangle(word));
+    lists.apart.push_back(shared::listedApart(word));
+  }
+  const auto pieces = p.executor->findGrown("triangles.pieces");
+  if (!pieces.empty()) lists.pieces = gpu::downloadAs<glm::uvec2>(oracles::sharedDevice(), *pieces.at(0), entries);
+  return lists;
+}
 
 Lists listsOf(const scene::Scene& scene, uint32_t resolution, const std::string& most = "256") {
   PipelineOptions options;
@@ -35,15 +54,7 @@ Lists listsOf(const scene::Scene& scene, uint32_t resolution, const std::string&
   options.outputs = {"voxelize.grid", "index.voxels", "triangles.first", "triangles.ids", "triangles.pieces"};
   Pipeline p(oracles::sharedDevice(), scene, options);
   p.run();
-  Lists lists;
-  lists.grid = p.buffer<shared::Grid>("voxelize.grid", 1)[0];
-  lists.voxels = p.buffer<uint32_t>("index.voxels", p.count("voxels"));
-  lists.first = p.buffer<uint32_t>("triangles.first", p.count("voxels") + 1);
-  const size_t entries = p.count("triangle_entries");
-  if (entries == 0) return lists;
-  lists.ids = gpu::downloadAs<uint32_t>(oracles::sharedDevice(), *p.executor->findGrown("triangles.ids").at(0), entries);
-  lists.pieces = gpu::downloadAs<glm::uvec2>(oracles::sharedDevice(), *p.executor->findGrown("triangles.pieces").at(0), entries);
-  return lists;
+  return listsOf(p);
 }
 
 scene::Scene randomScene(uint32_t seed, int count) {
@@ -121,6 +132,227 @@ TEST_F(TrianglesTest, CrowdedVoxelsHaveNoList) {
     crowded += count > 1;
   }
   EXPECT_GT(crowded, 10u);
+}
+
+// Sides of walls -----------------------------------------------------------------------------------------------------------------------
+
+/// A room whose walls are two skins `wall` voxels apart, turned so that nothing is in line with the grid.
+scene::Scene roomOfSkins(float wall, uint32_t resolution, bool doubleSided) {
+  const float thick = wall * 7.f / static_cast<float>(resolution - 1);
+  oracle::Soup soup;
+  oracle::addBox(soup, glm::vec3(-2.f), glm::vec3(2.f), glm::vec3(0.5f), true);
+  oracle::addBox(soup, glm::vec3(-2.f - thick), glm::vec3(2.f + thick), glm::vec3(0.5f), false);
+  const glm::quat turn = glm::angleAxis(0.4f, glm::normalize(glm::vec3(0.3f, 1.f, 0.2f)));
+  for (oracle::SoupTriangle& t : soup) {
+    t.doubleSided = doubleSided;
+    for (int c = 0; c < 3; ++c) {
+      t.position[c] = turn * t.position[c];
+      t.normal[c] = turn * t.normal[c];
+    }
+  }
+  scene::Scene scene = oracle::sceneOf(soup);
+  scene::PunctualLight sun;
+  sun.direction = glm::normalize(glm::vec3(0.5f, -1.f, 0.3f));
+  sun.intensity = glm::vec3(10.f);
+  scene.lights = {sun};
+  return scene;
+}
+
+Pipeline runOf(const scene::Scene& scene, uint32_t resolution) {
+  PipelineOptions options;
+  options.graph = "clustered_voxel_pixels";
+  options.settings = {{"voxelize.resolution", std::to_string(resolution)}};
+  options.outputs = {"voxelize.grid",    "index.voxels", "triangles.first", "triangles.ids",
+                     "triangles.pieces", "faces.mask",   "faces.first",     "surface.faces"};
+  Pipeline p(oracles::sharedDevice(), scene, options);
+  p.run();
+  return p;
+}
+
+/// One side of a piece of surface in a voxel, in double precision.
+struct PieceSide {
+  size_t entry = 0;
+  std::vector<glm::dvec3> corners;
+  glm::dvec3 normal{0}, middle{0};
+  double area = 0;
+
+  int faceOn(int k) const { return 2 * k + (normal[k] < 0 ? 1 : 0); }
+  /// How far the piece reaches in front of another's plane, voxels.
+  double reachAhead(const PieceSide& other) const {
+    double reach = -1e30;
+    for (const glm::dvec3& p : corners) reach = std::max(reach, glm::dot(p - other.middle, other.normal));
+    return reach;
+  }
+};
+
+enum class Answer { No, Yes, Unsure };  // Unsure: within the rounding of 10-bit middles
+
+Answer isApart(const PieceSide& leader, const PieceSide& piece) {
+  const double cosine = glm::dot(leader.normal, piece.normal);
+  if (cosine > 0.502) return Answer::No;
+  const double a = piece.reachAhead(leader), b = leader.reachAhead(piece);
+  if (cosine > 0.498 || std::abs(a - 0.01) < 4e-3 || std::abs(b - 0.01) < 4e-3) return Answer::Unsure;
+  return (a > 0.01) != (b > 0.01) ? Answer::Yes : Answer::No;
+}
+
+std::vector<PieceSide> sidesIn(const scene::Scene& scene, const Lists& lists, size_t v) {
+  std::vector<PieceSide> sides;
+  const glm::dvec3 low(shared::unpackVoxel(lists.voxels[v]));
+  for (uint32_t e = lists.first[v]; e < lists.first[v + 1]; ++e) {
+    oracle::Corners corners;
+    const uint32_t t = lists.ids[e];
+    for (int c = 0; c < 3; ++c)
+      corners[c] = (glm::dvec3(scene.vertices[scene.indices[3 * t + c]].position) - glm::dvec3(lists.grid.origin)) / double(lists.grid.h);
+    PieceSide side;
+    side.entry = e;
+    side.corners = oracle::clipToVoxel(corners, low);
+    side.normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    side.area = side.corners.empty() ? 0 : oracle::areaOf(side.corners);
+    side.middle = side.corners.empty() ? low : oracle::centroidOf(side.corners);
+    sides.push_back(side);
+    if ((scene.materials[scene.triangleMaterials[t]].flags & shared::kMaterialDoubleSided) == 0u) continue;
+    side.normal = -side.normal;
+    sides.push_back(side);
+  }
+  return sides;
+}
+
+TEST_F(TrianglesTest, PiecesAcrossAWallAreNoPartOfAFace) {
+  size_t apartCount = 0, checked = 0, unsure = 0;
+  for (const scene::Scene& scene : {roomOfSkins(0.3f, 20, false), roomOfSkins(0.5f, 20, true), randomScene(7, 60)}) {
+    Pipeline p = runOf(scene, 20);
+    const Lists lists = listsOf(p);
+    for (size_t v = 0; v < lists.voxels.size(); ++v) {
+      const std::vector<PieceSide> sides = sidesIn(scene, lists, v);
+      double most[6] = {}, second[6] = {};
+      const PieceSide* leader[6] = {};
+      for (const PieceSide& side : sides) {
+        for (int k = 0; k < 3; ++k) {
+          const int f = side.faceOn(k);
+          const double weight = side.area * std::abs(side.normal[k]);
+          if (weight > most[f]) {
+            second[f] = most[f];
+            most[f] = weight;
+            leader[f] = &side;
+          } else {
+            second[f] = std::max(second[f], weight);
+          }
+        }
+      }
+      std::vector<uint32_t> expected(lists.first[v + 1] - lists.first[v]);
+      std::vector<bool> isUnsure(expected.size());
+      for (const PieceSide& side : sides) {
+        const size_t i = side.entry - lists.first[v];
+        uint32_t leaves = 0;
+        bool stays = false;
+        for (int k = 0; k < 3; ++k) {
+          const int f = side.faceOn(k);
+          if (leader[f] == nullptr) continue;
+          // A tie of two leaders may fall either way.
+          if (most[f] < 1e-3 || second[f] > 0.999 * most[f] || side.area < 1e-4) isUnsure[i] = true;
+          const Answer answer = leader[f]->entry == side.entry ? Answer::No : isApart(*leader[f], side);
+          if (answer == Answer::Unsure) isUnsure[i] = true;
+          if (answer == Answer::Yes)
+            leaves |= 1u << f;
+          else
+            stays = true;
+        }
+        if (stays) expected[i] |= leaves;
+      }
+      // Surfaces all within 30 degrees of the first are one that bends; none of them is apart, but for backs of double-sided ones.
+      bool bends = true;
+      for (const PieceSide& side : sides) {
+        const double cosine = std::abs(glm::dot(side.normal, sides[0].normal));
+        bends = bends && cosine > 0.87;
+        if (std::abs(cosine - 0.87) < 1e-4) isUnsure.assign(isUnsure.size(), true);
+      }
+      if (bends || expected.size() > 64) expected.assign(expected.size(), 0);
+      for (size_t i = 0; i < expected.size(); ++i) {
+        const size_t e = lists.first[v] + i;
+        const uint32_t flags = scene.materials[scene.triangleMaterials[lists.ids[e]]].flags;
+        if ((flags & shared::kMaterialDoubleSided) == 0u) expected[i] |= (expected[i] & 21u) << 1 | ((expected[i] >> 1) & 21u);
+        unsure += isUnsure[i];
+        if (isUnsure[i]) continue;
+        ++checked;
+        apartCount += expected[i] != 0;
+        EXPECT_EQ(lists.apart[e], expected[i]) << "voxel " << v << ", triangle " << lists.ids[e];
+      }
+    }
+  }
+  EXPECT_GT(apartCount, 200u);
+  EXPECT_GT(checked, 4 * unsure);
+  std::printf("%zu pieces checked, %zu of them apart; %zu too close to tell\n", checked, apartCount, unsure);
+}
+
+// What surface makes of them: area of a face is that of the pieces that are part of it.
+TEST_F(TrianglesTest, FacesAreMadeOfThePiecesThatArePartOfThem) {
+  const scene::Scene scene = roomOfSkins(0.3f, 20, false);
+  Pipeline p = runOf(scene, 20);
+  const Lists lists = listsOf(p);
+  const auto mask = p.buffer<uint32_t>("faces.mask", p.count("voxels")), first = p.buffer<uint32_t>("faces.first", p.count("voxels"));
+  const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+  size_t checked = 0, left = 0;
+  for (size_t v = 0; v < lists.voxels.size(); ++v) {
+    double area[6] = {}, whole[6] = {};
+    for (const PieceSide& side : sidesIn(scene, lists, v)) {
+      for (int k = 0; k < 3; ++k) {
+        const int f = side.faceOn(k);
+        const double weight = side.area * std::abs(side.normal[k]);
+        whole[f] += weight;
+        if ((lists.apart[side.entry] >> f & 1u) == 0u) area[f] += weight;
+      }
+    }
+    for (int f = 0; f < 6; ++f) {
+      if ((mask[v] >> f & 1u) == 0u) continue;
+      const shared::Face& face = faces[first[v] + std::popcount(mask[v] & ((1u << f) - 1))];
+      if (whole[f] > 0 && whole[f] < 1e-5) continue;  // scraps
+      const int of = whole[f] > 0 ? f : f ^ 1;        // fronts, or backs where it has none
+      EXPECT_NEAR(face.area, area[of], 1e-4 + 1e-4 * area[of]) << "voxel " << v << ", face " << f;
+      ++checked;
+      left += area[of] < 0.99 * whole[of];
+    }
+  }
+  EXPECT_GT(left, 100u);
+  std::printf("%zu faces, %zu of them without some of their surface\n", checked, left);
+}
+
+// What inject makes of them: no sun on voxel faces that are made of the inside alone.
+TEST_F(TrianglesTest, NoLightFallsOnFacesOfTheOtherSide) {
+  PipelineOptions options;
+  const scene::Scene scene = roomOfSkins(0.3f, 20, false);
+  options.graph = "clustered_voxel_pixels";
+  options.settings = {{"voxelize.resolution", "20"}, {"visibility.rays", "4"}};
+  options.outputs = {"voxelize.grid", "index.voxels", "triangles.first", "triangles.ids",
+                     "faces.mask",    "faces.first",  "surface.faces",   "inject.face_irradiance"};
+  Pipeline p(oracles::sharedDevice(), scene, options);
+  p.run();
+  const auto mask = p.buffer<uint32_t>("faces.mask", p.count("voxels")), first = p.buffer<uint32_t>("faces.first", p.count("voxels"));
+  const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance", p.count("faces"));
+  const Lists lists = listsOf(p);
+  size_t inner = 0, mixed = 0, lit = 0;
+  constexpr uint32_t kInner = 12;  // the first box's triangles
+  for (size_t v = 0; v < lists.voxels.size(); ++v) {
+    for (int f = 0; f < 6; ++f) {
+      if ((mask[v] >> f & 1u) == 0u) continue;
+      bool hasInner = false, hasOuter = false, leftOuter = false;
+      for (const PieceSide& side : sidesIn(scene, lists, v)) {
+        if (side.faceOn(f >> 1) != f || side.area <= 0) continue;
+        const bool isInner = lists.ids[side.entry] < kInner, isApart = (lists.apart[side.entry] >> f & 1u) != 0u;
+        hasInner = hasInner || (isInner && !isApart);
+        hasOuter = hasOuter || (!isInner && !isApart);
+        leftOuter = leftOuter || (!isInner && isApart);
+      }
+      const glm::vec3 light = irradiance[first[v] + std::popcount(mask[v] & ((1u << f) - 1))];
+      lit += light.x > 0;
+      if (!hasInner || hasOuter) continue;
+      ++inner;
+      mixed += leftOuter;
+      EXPECT_EQ(light.x, 0.f) << "voxel " << v << ", face " << f << (leftOuter ? ", which a piece of the outside has left" : "");
+    }
+  }
+  EXPECT_GT(mixed, 50u);
+  EXPECT_GT(lit, 100u);
+  std::printf("%zu faces of the inside, %zu of them left by pieces of the outside; %zu faces lit\n", inner, mixed, lit);
 }
 
 /// Where triangles.corners is not read (too many triangles, or a graph without the edge) rays load vertices.

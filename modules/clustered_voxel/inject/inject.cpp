@@ -36,6 +36,10 @@ void Inject::declare(graph::Declaration& d) {
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;
+  d.readIf(lit_ && method_ == Method::Splat, "triangle_first", "first triangle of each voxel", "no texels are splatted").optional = true;
+  d.readIf(lit_ && method_ == Method::Splat, "triangle_ids", "triangles of each voxel, and faces they are no part of",
+           "no texels are splatted")
+      .optional = true;
   readSky(d);
   d.write("face_irradiance", Shape::buffer(12, Extent::of("faces")), "E_dir of each face, W/m²; 0: unlit");
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected direct light, W/m²");
@@ -59,11 +63,11 @@ void Inject::prepare(graph::PrepareContext& context) {
                                                              .constants = {{0, lit_ ? 1u : 0u}}});
   }
   if (lit_ && method_ == Method::Splat) {
-    splat_ =
-        gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
-                                                       .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                       .pushConstantBytes = 12,
-                                                       .constants = {{0, context.traits().soleLight()}}});
+    splat_ = gpu::Pipeline(
+        device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
+                                         .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                         .pushConstantBytes = 12,
+                                         .constants = {{0, context.traits().soleLight()}, {1, context.has("triangle_ids") ? 1u : 0u}}});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
@@ -104,11 +108,28 @@ void Inject::record(graph::RecordContext& context) {
     commands.fill(irradiance, 0);  // the low words, until they are resolved
     commands.fill(fluxHigh, 0);
     commands.barrier();
-    commands.bind(splat_, {context.buffer("scene.info"), context.buffer("scene.lights"), context.buffer("scene.shadow_views"),
-                           context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("shadow_triangle"),
-                           context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"),
-                           context.buffer("first"), irradiance, viewTable, status, context.buffer("scene.triangle_materials"),
-                           context.buffer("scene.materials"), fluxHigh, context.buffer("faces")});
+    const std::vector<const gpu::Buffer*> lists =
+        context.has("triangle_ids") ? context.grown("triangle_ids") : std::vector<const gpu::Buffer*>{};
+    commands.bind(splat_, {context.buffer("scene.info"),
+                           context.buffer("scene.lights"),
+                           context.buffer("scene.shadow_views"),
+                           context.buffer("scene.vertices"),
+                           context.buffer("scene.indices"),
+                           context.image("shadow_triangle"),
+                           context.buffer("grid"),
+                           context.buffer("occupancy"),
+                           context.buffer("rank"),
+                           context.buffer("mask"),
+                           context.buffer("first"),
+                           irradiance,
+                           viewTable,
+                           status,
+                           context.buffer("scene.triangle_materials"),
+                           context.buffer("scene.materials"),
+                           fluxHigh,
+                           context.buffer("faces"),
+                           context.buffer(lists.empty() ? "faces" : "triangle_first"),
+                           lists.empty() ? context.buffer("faces") : *lists.front()});
     // First one lane: the table. Then every texel.
     push.faceCount = 0;
     commands.push(push);

@@ -38,6 +38,8 @@ void Surface::declare(graph::Declaration& d) {
   d.read("voxels", "packed coordinate of each voxel");
   d.read("mask", "faces of each voxel", use);
   d.read("first", "first face of each voxel", use);
+  for (const char* name : {"triangle_first", "triangle_ids"})
+    d.read(name, "triangles of each voxel, and faces they are no part of", use).optional = true;
   const Extent voxels = Extent::of("voxels"), faces = Extent::of("faces");
   d.write("faces", Shape::buffer(sizeof(shared::Face), faces), "Face");
   d.write("emission", Shape::buffer(12, faces), "mean B_e of each face, W/m²; 0: dark").optional = true;
@@ -62,7 +64,8 @@ void Surface::prepare(graph::PrepareContext& context) {
   const uint32_t heuristic = normals_ == Normals::Heuristic ? 1 : 0;
   std::vector<gpu::SpecializationConstant> constants = materialConstants(context.traits());
   constants.push_back({3, heuristic});
-  pass_.prepare(device, method_, kType, "surface", 20, constants);
+  constants.push_back({4, context.has("triangle_ids") ? 1u : 0u});
+  pass_.prepare(device, method_, kType, "surface", 22, constants);
   if (emissive_)
     emissionPeak_ = gpu::Pipeline(
         device,
@@ -101,7 +104,9 @@ void Surface::sumPieces(graph::RecordContext& context) {
     commands.dispatchItems(context.traits().materialCount, 64);
     commands.barrier();
   }
-  const std::array<gpu::BoundResource, 16> rest = {
+  const std::vector<const gpu::Buffer*> lists =
+      context.has("triangle_ids") ? context.grown("triangle_ids") : std::vector<const gpu::Buffer*>{};
+  const std::array<gpu::BoundResource, 18> rest = {
       context.buffer("scene.triangle_materials"),
       context.buffer("scene.materials"),
       context.buffer("scene.textures"),
@@ -117,7 +122,9 @@ void Surface::sumPieces(graph::RecordContext& context) {
       peak,
       context.buffer("voxel_areas"),
       normals_ == Normals::Heuristic ? context.buffer("angle_sums") : context.buffer("area_sums"),
-      context.buffer("footprints")};
+      context.buffer("footprints"),
+      context.buffer(lists.empty() ? "area_sums" : "triangle_first"),
+      lists.empty() ? context.buffer("area_sums") : *lists.front()};
   pass_.record(context, grid, rest);
 }
 

@@ -1,7 +1,7 @@
 // clustered_voxel.surface — what each voxel face is: area, albedo, mean normal, mean position, emission.
 //
 // reads   scene.vertices, .indices, .triangle_materials, .materials, .textures; voxelize grid, occupancy; index rank, voxels;
-//         faces mask, first
+//         faces mask, first; triangles first?, ids? (which pieces are no part of which faces; absent: all are part of all)
 // writes  faces     Face × F   a_s = Σ w in h², w = area · |n·e_f|; ρ_s, n_s, x_s: means weighted by w; margins: how far from
 //                             the voxel's sides it ends, seen along e_f
 //         emission  vec3 × F   B_e = π Σ w L_e / a_s, W/m², of what faces outward on this side; 0: dark. Made only if read

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "shaders/shared/listed_triangle.h"
 #include "shaders/shared/triangle_corners.h"
 
 namespace radivox::clustered_voxel {
@@ -9,23 +10,41 @@ namespace radivox::clustered_voxel {
 using graph::Extent;
 using graph::Shape;
 
+namespace {
+const char* piecesPort(const graph::RecordContext& context) { return context.has("pieces") ? "pieces" : "own_pieces"; }
+}  // namespace
+
 Triangles::Triangles()
     : table_({TrianglePass::methodParam(&method_),
-              params::number("most", &most_, {1, 4096}, "voxels met by more triangles have no list", params::Invalidates::Rerun)}) {}
+              params::number("most", &most_, {1, 4096}, "voxels met by more triangles have no list", params::Invalidates::Rerun),
+              params::flag("apart", &apart_,
+                           "of a voxel face, surface on the far side of its largest piece is no part: else light comes through the corners "
+                           "of thin walls",
+                           params::Invalidates::Plan)}) {}
 
 void Triangles::declare(graph::Declaration& d) {
   const uint32_t use = TrianglePass::useOf(method_);
+  if (d.traits.triangleCount > shared::kMostListedTriangles)
+    throw Error(ErrorCode::Unsupported,
+                "clustered_voxel.triangles: " + std::to_string(d.traits.triangleCount) + " triangles; lists hold up to " +
+                    std::to_string(shared::kMostListedTriangles) +
+                    ": set visibility.triangles=0, gather_pixels.near=0, and connect no triangles to surface and inject");
   TrianglePass::declare(d, method_);
+  d.read("scene.triangle_materials", "one a triangle");
+  d.read("scene.materials", "Material");
   d.read("grid", "Grid", use);
   d.read("occupancy", "two words a brick", use);
   d.read("rank", "occupied voxels before the brick", use);
   d.read("voxels", "packed coordinate of each voxel");
   const Extent voxels = Extent::of("voxels");
   d.write("first", Shape::buffer(4, voxels + 1), "triangles in the lists of the voxels before, then the total", use | graph::UseTransfer);
-  d.write("ids", Shape::buffer(4, Extent::of("triangle_entries")), "triangle ids, ascending within a voxel").growable = true;
+  d.write("ids", Shape::buffer(4, Extent::of("triangle_entries")),
+          "triangles, ascending within a voxel, and which faces they are no part of (shared/listed_triangle.h)")
+      .growable = true;
   graph::Port& pieces = d.write("pieces", Shape::buffer(8, Extent::of("triangle_entries")),
                                 "middle of each triangle in its voxel (unorm 10:10:10), its area there (float bits, h²)");
   pieces.growable = pieces.optional = true;
+  if (apart_) d.write("own_pieces", {}, "the same where nobody reads them; freed at once").growable = true;
   d.write("corners",
           Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, uint64_t{3} * shared::kCornerRow, Extent::of("triangles") / shared::kCornerRow + 1),
           "corners of each triangle (grid space) and its normal, three texels each")
@@ -48,10 +67,15 @@ void Triangles::prepare(graph::PrepareContext& context) {
   sort_ = gpu::Pipeline(
       device,
       gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/sort_triangles.comp", .bindings = {kB, kB}, .pushConstantBytes = 4});
-  if (context.has("pieces"))
+  hasPieces_ = context.has("pieces") || apart_;
+  if (hasPieces_)
     pieces_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/voxelize/pieces.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
+  if (apart_)
+    partSides_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/part_sides.comp",
+                                                                .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                                                .pushConstantBytes = 4});
   if (context.has("corners"))
     corners_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/corners.comp",
                                                               .bindings = {kB, kB, kB, gpu::BindingType::StorageImage},
@@ -92,19 +116,31 @@ void Triangles::record(graph::RecordContext& context) {
     commands.bind(sort_, {first, *context.grown("ids").front()});
     commands.push(voxelCount);
     commands.dispatchItems(voxelCount, 64);
-    if (context.has("pieces")) {
+    const gpu::Buffer* pieces = hasPieces_ ? context.grown(piecesPort(context)).front() : nullptr;
+    if (hasPieces_) {
       commands.barrier();
       commands.bind(pieces_, {context.buffer("grid"), context.buffer("scene.vertices"), context.buffer("scene.indices"),
-                              context.buffer("voxels"), first, *context.grown("ids").front(), *context.grown("pieces").front()});
+                              context.buffer("voxels"), first, *context.grown("ids").front(), *pieces});
       const struct { uint32_t voxelCount, entryCount; } push{voxelCount, static_cast<uint32_t>(context.count("triangle_entries"))};
       commands.push(push);
       commands.dispatchItems(push.entryCount, 64);
+    }
+    if (apart_) {
+      commands.barrier();
+      commands.bind(partSides_, {context.buffer("scene.vertices"), context.buffer("scene.indices"),
+                                 context.buffer("scene.triangle_materials"), context.buffer("scene.materials"), first,
+                                 *context.grown("ids").front(), *pieces, context.buffer("grid"), context.buffer("voxels")});
+      commands.push(voxelCount);
+      commands.dispatchItems(voxelCount, 64);
     }
   }
 }
 
 void Triangles::stepDone(graph::RecordContext& context) {
-  if (context.step() != 0) return;
+  if (context.step() != 0) {
+    if (hasPieces_ && !context.has("pieces")) context.clearGrown("own_pieces");
+    return;
+  }
   uint32_t total[2];
   const std::vector<std::byte> words = context.readBuffer("total", 0, sizeof(total));
   std::memcpy(total, words.data(), sizeof(total));
@@ -112,9 +148,9 @@ void Triangles::stepDone(graph::RecordContext& context) {
     throw Error(ErrorCode::OutOfMemory,
                 "clustered_voxel.triangles: more than 2^32 triangles in voxels; lower triangles.most or voxelize.resolution");
   context.clearGrown("ids");
-  if (context.has("pieces")) context.clearGrown("pieces");
+  if (hasPieces_) context.clearGrown(piecesPort(context));
   if (total[0] > 0) context.grow("ids", uint64_t{total[0]} * 4);
-  if (total[0] > 0 && context.has("pieces")) context.grow("pieces", uint64_t{total[0]} * 8);
+  if (total[0] > 0 && hasPieces_) context.grow(piecesPort(context), uint64_t{total[0]} * 8);
   context.setCount("triangle_entries", total[0]);
 }
 

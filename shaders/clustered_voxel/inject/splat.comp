@@ -28,6 +28,9 @@ layout(set = 0, binding = 14, scalar) readonly buffer TriangleMaterialBuffer { u
 layout(set = 0, binding = 15, scalar) readonly buffer MaterialBuffer { Material materials[]; };
 layout(set = 0, binding = 16, scalar) buffer FluxHighBuffer { uint fluxHigh[]; };
 layout(set = 0, binding = 17, scalar) readonly buffer FacesBuffer { Face faces[]; };
+layout(set = 0, binding = 18, scalar) readonly buffer TriangleFirstBuffer { uint triangleFirst[]; };
+layout(set = 0, binding = 19, scalar) readonly buffer TriangleIdsBuffer { uint triangleIds[]; };
+layout(constant_id = 1) const bool kApart = false;  // pieces of other sides leave faces
 layout(constant_id = 0) const uint kSoleLight = 0xffffffffu;  // the kind of the one light; all ones: there may be more
 layout(push_constant, scalar) uniform Push {
   uint viewCount;
@@ -35,6 +38,7 @@ layout(push_constant, scalar) uniform Push {
   uint faceCount;  // 0: make the table
 };
 
+#include "clustered_voxel/apart.glsl"
 
 void makeTable() {
   // No light's flux can pass this: the sum in any face stays below 2^62 of the fixed-point unit.
@@ -76,15 +80,18 @@ void addFlux(uint word, uvec2 value) {
 
 // Adds `power`·max(0, n·e_f) to the faces of the voxel at `coord`; the weight that found a face. Light on a back goes where the face is made of backs:
 // a face that shows fronts does not show it, and beside the edge of a thin-walled room those fronts may lie inside, the lit back outside.
-float deposit(ivec3 coord, vec3 n, vec3 power, int exponent, bool isBack) {
+float deposit(ivec3 coord, uint triangle, vec3 n, vec3 power, int exponent, bool isBack) {
   uint voxel = voxelIndex(coord);
   if (voxel == kNone) return 0.0;
+  uint apart = kApart ? apartIn(voxel, triangle) : 0u;
   float found = 0.0;
   for (uint k = 0; k < 3; ++k) {
     float w = abs(n[k]);
-    uint face = faceIndex(voxel, 2 * k + (n[k] < 0.0 ? 1u : 0u));
+    uint f = 2 * k + (n[k] < 0.0 ? 1u : 0u);
+    uint face = faceIndex(voxel, f);
     if (face == kNone || w == 0.0) continue;
     found += w * w;
+    if (((apart >> f) & 1u) != 0u) continue;
     if (isBack && (faces[face].position & kMadeOfBacks) == 0u) continue;
     for (uint c = 0; c < 3; ++c) addFlux(face * 3 + c, toUnits(power[c] * w, exponent));
   }
@@ -142,13 +149,13 @@ void main() {
   int exponent = int(viewTable[0]);
   vec3 q = toGridSpace(grid, p);
   ivec3 coord = ivec3(floor(q));
-  if (deposit(coord, n, power, exponent, isBack) > 0.5) return;
+  if (deposit(coord, triangle, n, power, exponent, isBack) > 0.5) return;
   // On the border between two voxels rounding may choose the one that has no such face: try the nearer neighbours.
   vec3 inside = q - floor(q);
   for (int k = 0; k < 3; ++k) {
     ivec3 step = ivec3(0);
     step[k] = inside[k] < 0.5 ? -1 : 1;
-    if (min(inside[k], 1.0 - inside[k]) < 0.01 && deposit(coord + step, n, power, exponent, isBack) > 0.5) return;
+    if (min(inside[k], 1.0 - inside[k]) < 0.01 && deposit(coord + step, triangle, n, power, exponent, isBack) > 0.5) return;
   }
   atomicAdd(status[0], 1u);
 }

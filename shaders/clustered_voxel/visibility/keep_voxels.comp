@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 #include "clustered_voxel/visibility/visibility.h"
 #include "clustered_voxel/visibility/kept_hits.glsl"
+#include "shared/listed_triangle.h"
 #include "shared/scene.h"
 #include "shared/voxel_plane.h"
 layout(set = 0, binding = 0, scalar) readonly buffer Voxels { uint voxels[]; };
@@ -53,7 +54,8 @@ void main() {
   }
   if (kTriangles) {
     for (uint e = triangleFirst[voxel]; e < triangleFirst[voxel + 1u]; ++e) {
-      uint id = triangleIds[e];
+      uint id = listedTriangle(triangleIds[e]);
+      add(listedApart(triangleIds[e]));
       add(triangleMaterials[id]);
       for (uint c = 0u; c < 3u; ++c) {
         Vertex vertex = vertices[indices[3u * id + c]];

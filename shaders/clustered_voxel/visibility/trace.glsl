@@ -66,13 +66,14 @@ vec3 unitNormal(uint id) {
   return unit;
 }
 
-// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back); n: that side's normal.
+// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back) and is part of the face; n: that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
-  vec3 front = unitNormal(triangleIds[entry]);
+  uint listed = triangleIds[entry];
+  vec3 front = unitNormal(listedTriangle(listed));
   vec3 unit = backs ? -front : front;
   n = unit;
   precise float weight = max((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1], 0.0) * uintBitsToFloat(pieces[entry].y);
-  return weight;
+  return ((listedApart(listed) >> f) & 1u) != 0u ? 0.0 : weight;
 }
 
 // The pieces of a face's surface, as rays start from them: fronts, or backs where there are no fronts (as clustered_voxel.surface makes faces).
@@ -167,7 +168,7 @@ TraversalRay rayFromPiece(Start start, uint at, out vec3 about, out uint own) {
     // Strata of the surface, in an order that has nothing to do with that of the directions.
     uint turn = hashBits(start.seed ^ 0x51ed270bu);
     uint entry = pieceAt(start.surface, start.f, (float((at * 11u + turn) % rayCount) + 0.5) / float(rayCount), about);
-    own = triangleIds[entry];
+    own = listedTriangle(triangleIds[entry]);
     from = vec3(start.coordinate) + decodePosition(pieces[entry].x) + kPieceLift * about;
   }
   return makeTraversalRay(from, alongNormal(decodeDirection(directions[start.directions + at]), about));

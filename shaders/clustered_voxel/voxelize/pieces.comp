@@ -4,6 +4,7 @@
 // Middle and area of the piece of each listed triangle in its voxel: where rays of the voxel's faces start. One lane an entry.
 #include "clustered_voxel/voxelize/piece.glsl"
 #include "shared/dispatch.glsl"
+#include "shared/listed_triangle.h"
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 3, scalar) readonly buffer Voxels { uint voxels[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
@@ -31,7 +32,7 @@ void main() {
   uint entry = radivoxItemIndex();
   if (entry >= entryCount) return;
   uvec3 voxel = unpackVoxel(voxels[voxelOfEntry(entry)]);
-  Triangle t = loadTriangle(triangleIds[entry]);
+  Triangle t = loadTriangle(listedTriangle(triangleIds[entry]));
   Piece piece = measurePiece(t, turn(ivec3(voxel), t.axis));
   pieces[entry] = uvec2(encodePosition(turnBack(piece.middle, t.axis)), floatBitsToUint(max(piece.area, 0.0)));
 }

@@ -18,7 +18,11 @@ layout(set = 0, binding = 16, scalar) readonly buffer EmissionPeak { uint emissi
 layout(set = 0, binding = 17, scalar) buffer VoxelAreas { uint voxelAreas[]; };      // 2 words a voxel: Σ area
 layout(set = 0, binding = 18, scalar) buffer AngleSums { uint angleSums[]; };        // 12 words a voxel: Σ area · angle(n, e_f)
 layout(set = 0, binding = 19, scalar) buffer Footprints { uint footprints[]; };      // a word a face: footprintOf
+layout(constant_id = 4) const bool kApart = false;  // pieces of other sides leave faces
+layout(set = 0, binding = 20, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
+layout(set = 0, binding = 21, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
 
+#include "clustered_voxel/apart.glsl"
 #include "clustered_voxel/voxelize/emission_scale.glsl"
 #include "clustered_voxel/voxelize/footprint.glsl"
 #include "clustered_voxel/voxelize/shading_normal.glsl"
@@ -74,6 +78,7 @@ void visitVoxel(Triangle t, ivec3 turned) {
   }
   // A one-sided surface adds to its front alone, even where backs reflect too: see surface_resolve.comp.
   bool doubleSided = (materials[material].flags & kMaterialDoubleSided) != 0u;
+  uint apart = kApart ? apartIn(index, t.id) : 0u;
   // One loop, so that the additions are compiled once: k = s / 2; even s add to the front.
   for (uint s = 0u; s < 6u; ++s) {
     uint k = s >> 1;
@@ -83,6 +88,7 @@ void visitVoxel(Triangle t, ivec3 turned) {
     uint front = 2u * worldAxis(t, k) + (piece.normal[k] < 0.0 ? 1u : 0u);
     uint frontFace = first + uint(bitCount(mask & ((1u << front) - 1u)));
     uint f = isBack ? front ^ 1u : front;
+    if (((apart >> f) & 1u) != 0u) continue;
     uint face = first + uint(bitCount(mask & ((1u << f) - 1u)));
     uint footprint = footprintOf(t, turned, piece, k);
     if ((footprints[face] & footprint) != footprint) atomicOr(footprints[face], footprint);
