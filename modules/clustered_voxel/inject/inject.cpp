@@ -1,5 +1,6 @@
 #include "modules/clustered_voxel/inject/inject.h"
 
+#include <algorithm>
 #include <array>
 
 #include "modules/clustered_voxel/sky/sky.h"
@@ -12,7 +13,8 @@ using graph::Shape;
 
 namespace {
 constexpr uint32_t kGroup = 64;
-}
+constexpr uint64_t kTexelsPerRun = 16;  // splat.comp
+}  // namespace
 
 Inject::Inject()
     : table_({params::choice("method", &method_, {"splat", "points"},
@@ -103,8 +105,8 @@ void Inject::record(graph::RecordContext& context) {
     const gpu::Buffer& fluxHigh = context.buffer("flux_high");
     const gpu::Buffer& viewTable = context.buffer("table");
     // At most: tiles need not fill their layers; the shader stops at the last view.
-    const uint64_t side = context.count("shadow_resolution");
-    const uint64_t texels = side * side * context.count("shadow_layers");
+    const uint64_t side = context.count("shadow_resolution"), texels = side * side * context.count("shadow_layers");
+    const uint64_t runs = std::min(texels, texels / kTexelsPerRun + push.viewCount * side);
     commands.fill(irradiance, 0);  // the low words, until they are resolved
     commands.fill(fluxHigh, 0);
     commands.barrier();
@@ -137,7 +139,7 @@ void Inject::record(graph::RecordContext& context) {
     commands.barrier();
     push.faceCount = faceCount;
     commands.push(push);
-    commands.dispatchItems(texels, kGroup);
+    commands.dispatchItems(runs, kGroup);
     commands.barrier();
     commands.bind(resolve_, {context.buffer("faces"), context.buffer("grid"), irradiance, viewTable, fluxHigh,
                              context.buffer("scene.lights"), context.buffer("voxels")});

@@ -7,7 +7,7 @@
 //         cluster_radiosity vec3 × C   Σ w ρ E_dir / Σ w, W/m²: the light that clusters send back at once
 //         status            u32 × 4    texels that found no face (their flux is lost), low and high word of all lit texels, 0
 // runs    when lights, shadow maps, faces or clusters change
-// cost    splat: one lane a shadow texel, 3 to 9 additions each; points: 18 shadow look-ups a face and light
+// cost    splat: one lane 16 shadow texels, 3 to 9 additions for those of them that land in one voxel; points: 18 shadow look-ups a face and light
 // source  clustered_voxel_2022 section 4.4 (points); METHODS section 1, Inject (splat)
 //
 // method=splat: the flux of each shadow-map texel falls into the voxel faces of the surface it lands on, so energy is kept exactly

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 // Every shadow-map texel drops its flux into the voxel faces of the surface it lands on. See modules/clustered_voxel/inject/inject.h.
+// A lane takes a short column of texels: next to each other they mostly land in one voxel, and what it gets is added up before memory is touched.
 #include "shared/dispatch.glsl"
 #include "shared/light.glsl"
 #include "shared/scene.h"
@@ -22,7 +23,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer VertexBuffer { Vertex verti
 layout(set = 0, binding = 4, scalar) readonly buffer IndexBuffer { uint indices[]; };
 layout(set = 0, binding = 5) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 11, scalar) buffer FluxLowBuffer { uint fluxLow[]; };  // RGB a face
-layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; };  // [0] exponent as int; [1 + v] first texel of view v
+layout(set = 0, binding = 12, scalar) buffer TableBuffer { uint viewTable[]; };  // [0] exponent as int; [1 + v] first run of view v
 layout(set = 0, binding = 13, scalar) buffer StatusBuffer { uint status[]; };
 layout(set = 0, binding = 14, scalar) readonly buffer TriangleMaterialBuffer { uint triangleMaterials[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer MaterialBuffer { Material materials[]; };
@@ -32,6 +33,7 @@ layout(set = 0, binding = 18, scalar) readonly buffer TriangleFirstBuffer { uint
 layout(set = 0, binding = 19, scalar) readonly buffer TriangleIdsBuffer { uint triangleIds[]; };
 layout(constant_id = 1) const bool kApart = false;  // pieces of other sides leave faces
 layout(constant_id = 0) const uint kSoleLight = 0xffffffffu;  // the kind of the one light; all ones: there may be more
+const uint kRun = 16u;  // texels
 layout(push_constant, scalar) uniform Push {
   uint viewCount;
   uint lightCount;
@@ -47,18 +49,18 @@ void makeTable() {
     float peak = max(lights[l].intensity.x, max(lights[l].intensity.y, lights[l].intensity.z));
     total += lights[l].type == kLightDirectional ? 0.0 : 12.566371 * peak;
   }
-  uint texels = 0;
+  uint runs = 0;
   for (uint v = 0; v < viewCount; ++v) {
-    viewTable[1 + v] = texels;
+    viewTable[1 + v] = runs;
     uint count = views[v].resolution * views[v].resolution;
-    texels += count;
+    runs += views[v].resolution * ((views[v].resolution + kRun - 1) / kRun);
     Light light = lights[views[v].light];
     if (light.type == kLightDirectional) {
       float peak = max(light.intensity.x, max(light.intensity.y, light.intensity.z));
       total += peak * views[v].texelFlux * float(count);
     }
   }
-  viewTable[1 + viewCount] = texels;
+  viewTable[1 + viewCount] = runs;
   int exponent = total > 0.0 && !isinf(total) ? 61 - int(ceil(log2(total))) : 0;
   viewTable[0] = uint(clamp(exponent, -120, 120));
 }
@@ -78,24 +80,43 @@ void addFlux(uint word, uvec2 value) {
   if (high != 0u) atomicAdd(fluxHigh[word], high);
 }
 
-// Adds `power`·max(0, n·e_f) to the faces of the voxel at `coord`; the weight that found a face. Light on a back goes where the face is made of backs:
-// a face that shows fronts does not show it, and beside the edge of a thin-walled room those fronts may lie inside, the lit back outside.
-float deposit(ivec3 coord, uint triangle, vec3 n, vec3 power, int exponent, bool isBack) {
+// The faces of the voxel at `coord` that surface with normal n is part of; kNone: none, or one that does not show it. The weight that found a face.
+// Light on a back goes where the face is made of backs: a face that shows fronts does not show it, and beside the edge of a thin-walled room those
+// fronts may lie inside, the lit back outside.
+float facesAt(ivec3 coord, uint triangle, vec3 n, bool isBack, out uvec3 found) {
+  found = uvec3(kNone);
   uint voxel = voxelIndex(coord);
   if (voxel == kNone) return 0.0;
   uint apart = kApart ? apartIn(voxel, triangle) : 0u;
-  float found = 0.0;
+  float weight = 0.0;
   for (uint k = 0; k < 3; ++k) {
-    float w = abs(n[k]);
     uint f = 2 * k + (n[k] < 0.0 ? 1u : 0u);
     uint face = faceIndex(voxel, f);
-    if (face == kNone || w == 0.0) continue;
-    found += w * w;
-    if (((apart >> f) & 1u) != 0u) continue;
-    if (isBack && (faces[face].position & kMadeOfBacks) == 0u) continue;
-    for (uint c = 0; c < 3; ++c) addFlux(face * 3 + c, toUnits(power[c] * w, exponent));
+    if (face == kNone || n[k] == 0.0) continue;
+    weight += abs(n[k]) * abs(n[k]);
+    if (((apart >> f) & 1u) != 0u || (isBack && (faces[face].position & kMadeOfBacks) == 0u)) continue;
+    found[k] = face;
   }
-  return found;
+  return weight;
+}
+
+// Adds power · max(0, n·e_f).
+void deposit(uvec3 found, vec3 n, vec3 power, int exponent) {
+  for (uint k = 0; k < 3; ++k) {
+    if (found[k] == kNone) continue;
+    for (uint c = 0; c < 3; ++c) addFlux(found[k] * 3 + c, toUnits(power[c] * abs(n[k]), exponent));
+  }
+}
+
+// What the run has brought to one voxel's faces so far.
+uvec3 sumFaces = uvec3(kNone);
+uvec2 sums[9];
+
+void flush() {
+  for (uint k = 0; k < 3; ++k) {
+    if (sumFaces[k] == kNone) continue;
+    for (uint c = 0; c < 3; ++c) addFlux(sumFaces[k] * 3 + c, sums[3 * k + c]);
+  }
 }
 
 void main() {
@@ -105,7 +126,7 @@ void main() {
     return;
   }
   if (i >= viewTable[1 + viewCount]) return;
-  uint low = 0, high = viewCount;  // the last view whose first texel is ≤ i
+  uint low = 0, high = viewCount;  // the last view whose first run is ≤ i
   while (kSoleLight != kLightDirectional && high - low > 1) {
     uint middle = (low + high) / 2;
     if (viewTable[1 + middle] <= i) low = middle;
@@ -115,47 +136,86 @@ void main() {
   Light light = lights[view.light];
   if (kSoleLight != 0xffffffffu) light.type = kSoleLight;
   uint local = i - viewTable[1 + low];
-  uvec2 texel = uvec2(local % view.resolution, local / view.resolution);
-  uint id = texelFetch(shadowTriangle, ivec3(view.offsetX + texel.x, view.offsetY + texel.y, view.layer), 0).x;
-  if (id == 0u) return;
-  uint triangle = id - 1;
-  vec3 a = vertices[indices[3 * triangle]].position;
-  vec3 b = vertices[indices[3 * triangle + 1]].position;
-  vec3 c = vertices[indices[3 * triangle + 2]].position;
-  vec3 n = cross(b - a, c - a);
-  float doubleArea = length(n);
-  if (!(doubleArea > 0.0)) return;
-  n /= doubleArea;
-
-  // The texel centre's ray meets the triangle's plane: exact, where the stored depth is rounded.
-  vec2 ndc = (vec2(texel) + 0.5) / float(view.resolution) * 2.0 - 1.0;
-  vec3 origin, d;
-  shadowRay(view, light, ndc, origin, d);
-  float slope = dot(n, d);
-  if (slope == 0.0) return;
-  float t = dot(n, a - origin) / slope;
-  vec3 p = origin + t * d;
-  bool isBack = false;
-  if (slope > 0.0) {  // the side that the light reaches
-    isBack = (materials[triangleMaterials[triangle]].flags & kMaterialDoubleSided) == 0u;
-    if (grid.singleSided != 0u && isBack) return;
-    n = -n;
-  }
-  vec3 power = shadowTexelFlux(view, light, d, p);
-  if (!(max(power.x, max(power.y, power.z)) > 0.0)) return;
-
-  uint old = atomicAdd(status[1], 1u);
-  if (old == 0xffffffffu) atomicAdd(status[2], 1u);
+  uvec2 texel = uvec2(local % view.resolution, local / view.resolution * kRun);
+  uint end = min(texel.y + kRun, view.resolution);
   int exponent = int(viewTable[0]);
-  vec3 q = toGridSpace(grid, p);
-  ivec3 coord = ivec3(floor(q));
-  if (deposit(coord, triangle, n, power, exponent, isBack) > 0.5) return;
-  // On the border between two voxels rounding may choose the one that has no such face: try the nearer neighbours.
-  vec3 inside = q - floor(q);
-  for (int k = 0; k < 3; ++k) {
-    ivec3 step = ivec3(0);
-    step[k] = inside[k] < 0.5 ? -1 : 1;
-    if (min(inside[k], 1.0 - inside[k]) < 0.01 && deposit(coord + step, triangle, n, power, exponent, isBack) > 0.5) return;
+
+  uint id = 0u;  // of the texel before, + 1
+  vec3 a = vec3(0.0), front = vec3(0.0);
+  bool hasPlane = false, isDouble = false;
+  ivec3 sumCoord = ivec3(-1);
+  uint sumId = 0u;
+  float sumWeight = 0.0;
+  bool sumFront = true;
+  uint lit = 0u, lost = 0u;
+  for (; texel.y < end; ++texel.y) {
+    uint here = texelFetch(shadowTriangle, ivec3(view.offsetX + texel.x, view.offsetY + texel.y, view.layer), 0).x;
+    if (here == 0u) continue;
+    uint triangle = here - 1;
+    if (here != id) {
+      id = here;
+      a = vertices[indices[3 * triangle]].position;
+      vec3 b = vertices[indices[3 * triangle + 1]].position;
+      vec3 c = vertices[indices[3 * triangle + 2]].position;
+      front = cross(b - a, c - a);
+      float doubleArea = length(front);
+      hasPlane = doubleArea > 0.0;
+      front /= doubleArea;
+      isDouble = (materials[triangleMaterials[triangle]].flags & kMaterialDoubleSided) != 0u;
+    }
+    if (!hasPlane) continue;
+
+    // The texel centre's ray meets the triangle's plane: exact, where the stored depth is rounded.
+    vec2 ndc = (vec2(texel) + 0.5) / float(view.resolution) * 2.0 - 1.0;
+    vec3 origin, d;
+    shadowRay(view, light, ndc, origin, d);
+    float slope = dot(front, d);
+    if (slope == 0.0) continue;
+    float t = dot(front, a - origin) / slope;
+    vec3 p = origin + t * d;
+    bool isFront = slope < 0.0;
+    bool isBack = !isFront && !isDouble;
+    if (isBack && grid.singleSided != 0u) continue;
+    vec3 n = isFront ? front : -front;  // the side that the light reaches
+    vec3 power = shadowTexelFlux(view, light, d, p);
+    if (!(max(power.x, max(power.y, power.z)) > 0.0)) continue;
+    ++lit;
+
+    vec3 q = toGridSpace(grid, p);
+    ivec3 coord = ivec3(floor(q));
+    if (here != sumId || coord != sumCoord || isFront != sumFront) {
+      flush();
+      sumWeight = facesAt(coord, triangle, n, isBack, sumFaces);
+      sumId = here;
+      sumCoord = coord;
+      sumFront = isFront;
+      for (uint w = 0; w < 9; ++w) sums[w] = uvec2(0u);
+    }
+    for (uint k = 0; k < 3; ++k) {
+      for (uint c = 0; c < 3; ++c) {
+        uvec2 units = toUnits(power[c] * abs(n[k]), exponent);
+        uint sum = sums[3 * k + c].x + units.x;
+        sums[3 * k + c] = uvec2(sum, sums[3 * k + c].y + units.y + (sum < units.x ? 1u : 0u));
+      }
+    }
+    if (sumWeight > 0.5) continue;
+    // On the border between two voxels rounding may choose the one that has no such face: try the nearer neighbours.
+    vec3 inside = q - floor(q);
+    bool placed = false;
+    for (int k = 0; k < 3 && !placed; ++k) {
+      ivec3 step = ivec3(0);
+      step[k] = inside[k] < 0.5 ? -1 : 1;
+      if (min(inside[k], 1.0 - inside[k]) >= 0.01) continue;
+      uvec3 found;
+      placed = facesAt(coord + step, triangle, n, isBack, found) > 0.5;
+      deposit(found, n, power, exponent);
+    }
+    lost += placed ? 0u : 1u;
   }
-  atomicAdd(status[0], 1u);
+  flush();
+  if (lost != 0u) atomicAdd(status[0], lost);
+  if (lit != 0u) {
+    uint old = atomicAdd(status[1], lit);
+    if (old + lit < old) atomicAdd(status[2], 1u);
+  }
 }
