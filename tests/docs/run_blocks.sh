@@ -76,6 +76,7 @@ for argument in "$@"; do
     --spp) argument=2 ;;
     --time-limit) argument=2 ;;
     --max-error) argument=100 ;; # what so short a calibration can promise
+    --set) [[ $argument != voxelize.resolution=* ]] || argument=voxelize.resolution=32 ;;
   esac
   next=$argument
   arguments+=("$argument")
@@ -83,6 +84,9 @@ done
 has() { [[ " ${arguments[*]} " == *" $1 "* ]]; }
 case ${1:-} in
   render | reference | report) has --size || arguments+=(--size 64x36) ;;
+esac
+case ${1:-} in
+  render | vdb | moves) has --max-error || has --budget-ms || has --preset || has --set || arguments+=(--set voxelize.resolution=32) ;;
 esac
 # A window needs a display; what it shows does not.
 [[ ${1:-} == view ]] && ! has --headless && arguments+=(--headless --out view.png --size 64x36 --set voxelize.resolution=32)

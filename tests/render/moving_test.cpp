@@ -133,7 +133,6 @@ TEST_F(Moving, SlowEveryKindOfRay) {
   };
   const std::vector<Settings> kinds{
       {{"visibility.triangles", "0"}, {"visibility.rays", "40"}, {"visibility.near", "0"}, {"visibility.skip", "bricks"}},
-      {{"visibility.rays", "40"}},
       {{"visibility.triangles", "0"}, {"visibility.traversal", "bresenham"}, {"visibility.frame", "axis"}, {"visibility.hit", "voxel"}},
       {{"visibility.triangles", "3"}, {"triangles.most", "2"}},
   };
