@@ -9,15 +9,10 @@
 #include "shared/texture.glsl"
 #include "shared/traversal.glsl"
 #include "shared/triangle_corners.h"
+#include "shared/triangle_normal.glsl"
 
 const float kNearSlack = 1e-3;       // voxels: hits this far outside a voxel still count for it
 const float kEdgeSlack = 1e-5;       // closes the seams between triangles
-
-float triangleDot(vec3 a, vec3 b) {
-  precise float sum = a.x * b.x + a.y * b.y;
-  precise float all_ = sum + a.z * b.z;
-  return all_;
-}
 
 // Is the triangle there at these weights? (alpha mask)
 bool isCovered(uint id, vec2 weights) {

@@ -58,15 +58,11 @@ vec3 unitNormal(uint id) {
     return vec3(texelFetch(triangleCorners, at, 0).w, texelFetch(triangleCorners, at + ivec2(1, 0), 0).w,
                 texelFetch(triangleCorners, at + ivec2(2, 0), 0).w);
   }
-  vec3 a = vertices[indices[3u * id]].position;
-  vec3 e1 = vertices[indices[3u * id + 1u]].position - a;
-  vec3 e2 = vertices[indices[3u * id + 2u]].position - a;
-  precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-  precise vec3 unit = across * preciseInverseSqrt(max(triangleDot(across, across), 1e-30));
-  return unit;
+  return triangleNormal(id);
 }
 
-// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back) and is part of the face; n: that side's normal.
+// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back) and is part of the face; n:
+// that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
   uint listed = triangleIds[entry];
   vec3 front = unitNormal(listedTriangle(listed));

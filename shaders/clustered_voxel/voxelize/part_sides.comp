@@ -30,11 +30,7 @@ const float kApartSlack = 0.01;   // voxels; middles are good to 1e-3
 const float kLeastLeader = 1e-5;  // h²; surface along a face's axis may be no part of it by rounding, and must not lead it
 const uint kMostParted = 64u;     // pieces; a voxel of more keeps them all. (llvmpipe ends a lane's loops after 65535 rounds.)
 
-float dotPrecise(vec3 a, vec3 b) {
-  precise float two = a.x * b.x + a.y * b.y;
-  precise float three = two + a.z * b.z;
-  return three;
-}
+#include "shared/triangle_normal.glsl"
 
 struct Side {
   uint triangle;
@@ -42,21 +38,12 @@ struct Side {
   vec3 middle;  // in the voxel
 };
 
-vec3 frontNormal(uint id) {
-  vec3 a = vertices[indices[3u * id]].position;
-  vec3 e1 = vertices[indices[3u * id + 1u]].position - a;
-  vec3 e2 = vertices[indices[3u * id + 2u]].position - a;
-  precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-  precise vec3 unit = across * preciseInverseSqrt(max(dotPrecise(across, across), 1e-30));
-  return unit;
-}
-
 // Does any of the triangle's piece in the voxel lie in front of the plane through x with normal n? Its corners are ends of the triangle's edges, cut by
 // the voxel, and crossings of the voxel's edges with the triangle.
 bool reachesAhead(Side piece, vec3 voxel, vec3 n, vec3 x) {
   uint id = piece.triangle;
   precise vec3 ahead = piece.middle - x;
-  if (dotPrecise(ahead, n) > kApartSlack) return true;
+  if (triangleDot(ahead, n) > kApartSlack) return true;
   vec3 p[3];
   for (uint c = 0u; c < 3u; ++c) {
     precise vec3 at = toGridSpace(grid, vertices[indices[3u * id + c]].position) - voxel;
@@ -79,7 +66,7 @@ bool reachesAhead(Side piece, vec3 voxel, vec3 n, vec3 x) {
     }
     precise vec3 from = a + d * enter - x;
     precise vec3 to = a + d * leave - x;
-    if (enter <= leave && max(dotPrecise(from, n), dotPrecise(to, n)) > kApartSlack) return true;
+    if (enter <= leave && max(triangleDot(from, n), triangleDot(to, n)) > kApartSlack) return true;
   }
   precise vec3 e1 = p[1] - p[0];
   precise vec3 e2 = p[2] - p[0];
@@ -101,13 +88,13 @@ bool reachesAhead(Side piece, vec3 voxel, vec3 n, vec3 x) {
       inside = inside && side >= 0.0;
     }
     precise vec3 reach = y - x;
-    if (inside && dotPrecise(reach, n) > kApartSlack) return true;
+    if (inside && triangleDot(reach, n) > kApartSlack) return true;
   }
   return false;
 }
 
 bool isApart(Side leader, Side piece, vec3 voxel) {
-  if (dotPrecise(leader.normal, piece.normal) > kApartCosine) return false;
+  if (triangleDot(leader.normal, piece.normal) > kApartCosine) return false;
   return reachesAhead(piece, voxel, leader.normal, leader.middle) != reachesAhead(leader, voxel, piece.normal, piece.middle);
 }
 
@@ -119,9 +106,9 @@ void main() {
   uint begin = triangleFirst[voxel], end = triangleFirst[voxel + 1u];
   if (end < begin + 2u || end - begin > kMostParted) return;
   // Most voxels hold one surface, or one that bends.
-  vec3 first = frontNormal(triangleIds[begin]);
+  vec3 first = triangleNormal(triangleIds[begin]);
   bool bends = true;
-  for (uint e = begin + 1u; e < end && bends; ++e) bends = abs(dotPrecise(frontNormal(triangleIds[e]), first)) > kBendCosine;
+  for (uint e = begin + 1u; e < end && bends; ++e) bends = abs(triangleDot(triangleNormal(triangleIds[e]), first)) > kBendCosine;
   if (bends) return;
   vec3 voxelCorner = vec3(unpackVoxel(voxels[voxel]));
   float most[kFaceCount];
@@ -136,7 +123,7 @@ void main() {
     // How much of a piece an alpha mask leaves is not known here.
     if ((flags & kMaterialAlphaMask) != 0u) continue;
     uvec2 piece = pieces[e];
-    vec3 front = frontNormal(triangleIds[e]);
+    vec3 front = triangleNormal(triangleIds[e]);
     uint sideCount = (flags & kMaterialDoubleSided) != 0u ? 2u : 1u;
     for (uint s = 0u; s < sideCount; ++s) {
       vec3 n = s == 0u ? front : -front;
@@ -155,7 +142,7 @@ void main() {
     uint flags = materials[triangleMaterials[id]].flags;
     if ((flags & kMaterialAlphaMask) != 0u) continue;
     bool isDouble = (flags & kMaterialDoubleSided) != 0u;
-    vec3 front = frontNormal(id), middle = decodePosition(pieces[e].x);
+    vec3 front = triangleNormal(id), middle = decodePosition(pieces[e].x);
     uint apart = 0u;
     for (uint s = 0u; s < (isDouble ? 2u : 1u); ++s) {
       vec3 n = s == 0u ? front : -front;
