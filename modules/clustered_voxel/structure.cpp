@@ -17,8 +17,7 @@ void declareStructure(graph::Declaration& d) {
 
 void readEmission(graph::Declaration& d, const char* name, const char* meaning) {
   d.readIf(d.traits.hasEmissionByRays(), name, meaning,
-           d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters have samples with shadow maps")
-      .optional = true;
+           d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters have samples with shadow maps");
 }
 
 void bindStructure(graph::RecordContext& context, const gpu::Pipeline& pipeline, std::initializer_list<gpu::BoundResource> rest) {

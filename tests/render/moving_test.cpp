@@ -132,7 +132,9 @@ TEST_F(Moving, SlowEveryKindOfRay) {
     return more;
   };
   const std::vector<Settings> kinds{
-      {{"visibility.triangles", "0"}, {"visibility.rays", "40"}, {"visibility.near", "0"}, {"visibility.skip", "bricks"}},
+      {{"visibility.triangles", "0"}},
+      {{"visibility.rays", "100"}, {"visibility.skip", "bricks"}},
+      {{"visibility.triangles", "0"}, {"visibility.rays", "100"}, {"visibility.near", "0"}},
       {{"visibility.triangles", "0"}, {"visibility.traversal", "bresenham"}, {"visibility.frame", "axis"}, {"visibility.hit", "voxel"}},
       {{"visibility.triangles", "3"}, {"triangles.most", "2"}},
   };

@@ -1,8 +1,9 @@
 // clustered_voxel.filter — smooths gathered irradiance over the surface, lazily, without crossing walls.
 //
-// reads   shown, needed, the voxel structure, gathered irradiance, gathered_sky?, gathered_emitted?; cluster_radiosity, row_start and scene.sky? only to notice that
-//         the light or the rays changed
-// writes  irradiance* vec4 × F, sky* vec4 × F (only where the sky has an image), emitted* vec4 × F (only where emitters light by rays), valid* bits × F, status u32 × 4 (faces filtered by this run, then dispatch arguments)
+// reads   shown, needed, the voxel structure, gathered irradiance, gathered_sky?, gathered_emitted?; cluster_radiosity,
+//         row_start and scene.sky? only to notice that the light or the rays changed
+// writes  irradiance* vec4 × F, sky* vec4 × F (only where the sky has an image), emitted* vec4 × F (only where emitters light by rays),
+//         valid* bits × F, status u32 × 4 (faces filtered by this run, then dispatch arguments)
 // runs    when shown faces or gathered irradiance change; filters faces that are shown and not yet valid
 // cost    passes × filtered faces × (2 radius + 1)³ look-ups
 // source  the paper (4.4) blurs twice with a 5³ Gaussian over same-direction faces and drops unlit ones, which adds energy in shadow;

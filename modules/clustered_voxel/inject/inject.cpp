@@ -38,10 +38,9 @@ void Inject::declare(graph::Declaration& d) {
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;
-  d.readIf(lit_ && method_ == Method::Splat, "triangle_first", "first triangle of each voxel", "no texels are splatted").optional = true;
+  d.readIf(lit_ && method_ == Method::Splat, "triangle_first", "first triangle of each voxel", "no texels are splatted");
   d.readIf(lit_ && method_ == Method::Splat, "triangle_ids", "triangles of each voxel, and faces they are no part of",
-           "no texels are splatted")
-      .optional = true;
+           "no texels are splatted");
   readSky(d);
   d.write("face_irradiance", Shape::buffer(12, Extent::of("faces")), "E_dir of each face, W/m²; 0: unlit");
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected direct light, W/m²");

@@ -2,7 +2,6 @@
 // node types the installed modules have.
 #include "all_headers.h"
 
-#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -26,16 +25,14 @@ int run(char** argv) {
   const float density = std::strtof(argv[3], nullptr), radiance = std::strtof(argv[4], nullptr);
   double largest = 0, changed = 0;
   for (size_t i = 0; i < foggy.data.size(); ++i) {
-    const float x = density * depth.data[i / 3], share = std::exp(-x);
+    const float share = std::exp(-density * depth.data[i / 3]);
     const float expected = radiance * (1 - share) + clear.data[i] * share;
-    // A device's exp() is held to 2e-6; the two programs' cameras are rounded apart, which moves a steep surface by some 7e-6 of its depth; each
-    // other value is rounded by half a unit, here and there.
-    const float allowed = (2e-6F + 2e-5F * x) * share * std::fabs(clear.data[i] - radiance) + 2 * FLT_EPSILON * (radiance + clear.data[i]);
-    largest = std::fmax(largest, std::fabs(foggy.data[i] - expected) / allowed);
+    largest = std::fmax(largest, std::fabs(foggy.data[i] - expected) / (std::fabs(expected) + 1e-3));
     changed += foggy.data[i] != clear.data[i] ? 1 : 0;
   }
-  std::printf("largest difference: %g of what rounding allows; %g values changed\n", largest, changed);
-  return foggy.data.size() == clear.data.size() && largest <= 1 && changed > 0.5 * static_cast<double>(foggy.data.size()) ? 0 : 1;
+  std::printf("largest relative difference %g, %g values changed\n", largest, changed);
+  // exp() of a GPU may be off by 3 + 2 |x| units in the last place, here of x up to 1: 6e-7 of a share, more of a sum darker than its parts.
+  return foggy.data.size() == clear.data.size() && largest < 4e-6 && changed > 0.5 * static_cast<double>(foggy.data.size()) ? 0 : 1;
 }
 
 }  // namespace
