@@ -13,7 +13,8 @@ namespace {
 constexpr VkBufferUsageFlags kBufferUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                             VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+                                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                                            VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 /// Sizes are rounded up to words: fills and shaders work on words.
 VkBufferCreateInfo describeBuffer(const Device& device, const std::string& name, VkDeviceSize bytes) {
@@ -88,6 +89,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   release();
   device_ = std::exchange(other.device_, nullptr);
   buffer_ = std::exchange(other.buffer_, VK_NULL_HANDLE);
+  texels_ = std::exchange(other.texels_, {});
   ownedMemory_ = std::exchange(other.ownedMemory_, VK_NULL_HANDLE);
   bytes_ = std::exchange(other.bytes_, 0);
   address_ = std::exchange(other.address_, 0);
@@ -100,12 +102,34 @@ Buffer::~Buffer() { release(); }
 
 void Buffer::release() noexcept {
   if (device_ == nullptr) return;
+  for (VkBufferView view : texels_) vkDestroyBufferView(device_->handle(), view, nullptr);
   vkDestroyBuffer(device_->handle(), buffer_, nullptr);
   device_->free(ownedMemory_);  // unmaps too
+  texels_ = {};
   buffer_ = VK_NULL_HANDLE;
   ownedMemory_ = VK_NULL_HANDLE;
   mapped_ = nullptr;
   device_ = nullptr;
+}
+
+VkBufferView Buffer::texels(TexelType type) const {
+  const bool words = type == TexelType::Uint;
+  VkBufferView& view = texels_.at(words ? 1 : 0);
+  if (view != VK_NULL_HANDLE) return view;
+  if (device_ == nullptr) throw Error(ErrorCode::Unsupported, "buffer " + name_ + ": a host's buffer cannot be read as texels");
+  const Capabilities& can = device_->capabilities();
+  const VkDeviceSize size = words ? 4 : 16, count = ((bytes_ + 3) / 4 * 4) / size;
+  if (count > can.maxTexelBufferElements) {
+    throw Error(ErrorCode::OutOfMemory, "buffer " + name_ + ": " + std::to_string(count) + " texels, but " + can.deviceName +
+                                            " reads at most " + std::to_string(can.maxTexelBufferElements) +
+                                            " of a buffer; lower the resolution");
+  }
+  VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+  info.buffer = buffer_;
+  info.format = words ? VK_FORMAT_R32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  info.range = count * size;
+  check(vkCreateBufferView(device_->handle(), &info, nullptr, &view), "vkCreateBufferView");
+  return view;
 }
 
 VkMemoryRequirements Buffer::requirements(Device& device, VkDeviceSize bytes) {

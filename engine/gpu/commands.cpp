@@ -48,6 +48,7 @@ void Commands::bind(const Pipeline& pipeline, std::span<const BoundResource> res
   std::array<VkWriteDescriptorSet, kMaxBindings> writes;
   std::array<VkDescriptorBufferInfo, kMaxBindings> buffers;
   std::array<VkDescriptorImageInfo, kMaxBindings> images;
+  std::array<VkBufferView, kMaxBindings> texels;
   const VkDescriptorSet set = device_.cmdPushDescriptorSet != nullptr ? VK_NULL_HANDLE : pool_.take(pipeline);
   for (size_t i = 0; i < resources.size(); ++i) {
     const BoundResource& resource = resources[i];
@@ -65,6 +66,13 @@ void Commands::bind(const Pipeline& pipeline, std::span<const BoundResource> res
         buffers[i] = describeBuffer(device_.capabilities(), given, type);
         write.descriptorType = type == BindingType::StorageBuffer ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
         write.pBufferInfo = &buffers[i];
+        break;
+      }
+      case BindingType::TexelBuffer: {
+        assert(resource.buffer != nullptr && resource.offset == 0 && "an image or a part of a buffer where the pipeline wants texels");
+        texels[i] = (*resource.buffer ? *resource.buffer : pool_.placeholder()).texels(pipeline.imageKinds()[i].texel);
+        write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+        write.pTexelBufferView = &texels[i];
         break;
       }
       case BindingType::StorageImage:

@@ -67,10 +67,11 @@ VkDescriptorSet DescriptorPool::take(const Pipeline& pipeline) {
       const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8 * kSetsPerPool},
                                             {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kSetsPerPool},
                                             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 2 * kSetsPerPool},
-                                            {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * kSetsPerPool}};
+                                            {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * kSetsPerPool},
+                                            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kSetsPerPool}};
       VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
       info.maxSets = kSetsPerPool;
-      info.poolSizeCount = 4;
+      info.poolSizeCount = static_cast<uint32_t>(std::size(sizes));
       info.pPoolSizes = sizes;
       pools_.reserve(pools_.size() + 1);
       VkDescriptorPool pool = VK_NULL_HANDLE;

@@ -245,6 +245,7 @@ void DeviceBuilder::readCapabilities(const std::vector<std::string>& enabledExte
   c.deviceType = properties.properties.deviceType;
   c.subgroupSize = subgroup.subgroupSize;
   c.maxStorageBufferRange = limits.maxStorageBufferRange;
+  c.maxTexelBufferElements = limits.maxTexelBufferElements;
   c.maxUniformBufferRange = limits.maxUniformBufferRange;
   c.maxBufferSize = maintenance4.maxBufferSize;
   c.maxMemoryAllocationSize = maintenance3.maxMemoryAllocationSize;

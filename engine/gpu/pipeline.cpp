@@ -53,12 +53,15 @@ void checkStageLimits(const Device& device, const std::vector<BindingType>& bind
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(device.physicalDevice(), &properties);
   const VkPhysicalDeviceLimits& limits = properties.limits;
+  const auto images = static_cast<uint32_t>(std::count(bindings.begin(), bindings.end(), BindingType::SampledImage));
   const std::tuple<BindingType, uint32_t, const char*> kinds[] = {
       {BindingType::StorageBuffer, limits.maxPerStageDescriptorStorageBuffers, "storage buffers"},
       {BindingType::UniformBuffer, limits.maxPerStageDescriptorUniformBuffers, "uniform buffers"},
       {BindingType::StorageImage, limits.maxPerStageDescriptorStorageImages, "storage images"},
       {BindingType::SampledImage, std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers),
-       "sampled images"}};
+       "sampled images"},
+      {BindingType::TexelBuffer, limits.maxPerStageDescriptorSampledImages - std::min(limits.maxPerStageDescriptorSampledImages, images),
+       "texel buffers beside sampled images"}};
   for (const auto& [type, limit, name] : kinds) {
     const auto count = std::count(bindings.begin(), bindings.end(), type);
     if (count > static_cast<std::ptrdiff_t>(limit)) {
@@ -76,6 +79,8 @@ VkDescriptorType descriptorType(BindingType type) {
       return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     case BindingType::SampledImage:
       return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case BindingType::TexelBuffer:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     case BindingType::StorageBuffer:
       break;
   }
@@ -96,9 +101,9 @@ Pipeline::Pipeline(Device& device, const ComputePipelineInfo& info)
 }
 
 void Pipeline::makeCompute(Device& device, const ComputePipelineInfo& info) {
-  makeLayout(device, info.pushConstantBytes, VK_SHADER_STAGE_COMPUTE_BIT);
   const std::span<const uint32_t> words = info.code.empty() ? findShader(info.shader) : info.code;
-  reflectImageKinds(words, imageKinds_);
+  reflect(words);
+  makeLayout(device, info.pushConstantBytes, VK_SHADER_STAGE_COMPUTE_BIT);
   const ShaderModule module(device, words);
   const Specialization specialization(info.constants);
   VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
@@ -142,7 +147,7 @@ void Pipeline::makeRaster(Device& device, const RasterPipelineInfo& info) {
   for (const auto& [name, stage] : named) {
     if (name.empty()) continue;
     const std::span<const uint32_t> words = findShader(name);
-    reflectImageKinds(words, imageKinds_);
+    reflect(words);
     modules.push_back(std::make_unique<ShaderModule>(device, words));
     VkPipelineShaderStageCreateInfo entry{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
     entry.stage = stage;
@@ -209,6 +214,12 @@ void Pipeline::makeRaster(Device& device, const RasterPipelineInfo& info) {
   create.pDynamicState = &dynamic;
   create.layout = layout_;
   check(vkCreateGraphicsPipelines(device.handle(), device.pipelineCache(), 1, &create, nullptr, &pipeline_), "vkCreateGraphicsPipelines");
+}
+
+void Pipeline::reflect(std::span<const uint32_t> words) {
+  reflectImageKinds(words, imageKinds_);
+  for (size_t i = 0; i < bindings_.size(); ++i)
+    if (imageKinds_[i].buffer && bindings_[i] == BindingType::StorageBuffer) bindings_[i] = BindingType::TexelBuffer;
 }
 
 void Pipeline::makeLayout(Device& device, uint32_t pushBytes, VkShaderStageFlags stages) {

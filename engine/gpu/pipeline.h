@@ -12,19 +12,20 @@
 namespace radivox::gpu {
 
 enum class BindingType : uint8_t {
-  StorageBuffer,
+  StorageBuffer,  ///< TexelBuffer where the shader declares a `samplerBuffer` or a `usamplerBuffer`
   UniformBuffer,
   StorageImage,  ///< layout GENERAL
   SampledImage,  ///< combined image sampler, nearest, clamp to edge; layout GENERAL (colour) or DEPTH_READ_ONLY_OPTIMAL
+  TexelBuffer,   ///< a buffer as texels (Buffer::texels): what lanes load from scattered places, which CPU devices do lane by lane otherwise
 };
 
 constexpr uint32_t kMaxBindings = 32;  ///< what every device with push descriptors allows
 
-/// What a shader takes an image for, read from its SPIR-V: bind() finds the placeholder of a null image by it.
-enum class TexelType : uint8_t { Float, Uint, Int };
+/// What a shader takes an image or a texel buffer for, read from its SPIR-V: bind() finds the placeholder of a null image by it.
 struct ImageKind {
   TexelType texel = TexelType::Float;
   bool array = false;
+  bool buffer = false;  ///< a texel buffer
 };
 
 /// SPIR-V of "clustered_voxel/visibility/trace.comp" (path under shaders/). Throws BadInput for an unknown name.
@@ -76,7 +77,7 @@ class Pipeline {
   VkPipelineLayout layout() const { return layout_; }
   VkDescriptorSetLayout setLayout() const { return setLayout_; }
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
-  const std::vector<BindingType>& bindings() const { return bindings_; }
+  const std::vector<BindingType>& bindings() const { return bindings_; }  ///< as the shader has them
   const std::vector<ImageKind>& imageKinds() const { return imageKinds_; }  ///< one per binding; buffers have the default
   uint32_t pushConstantBytes() const { return pushConstantBytes_; }
   VkShaderStageFlags stages() const { return stages_; }
@@ -85,6 +86,8 @@ class Pipeline {
  private:
   void makeCompute(Device& device, const ComputePipelineInfo& info);
   void makeRaster(Device& device, const RasterPipelineInfo& info);
+  /// What bind() must know of a stage: kinds of images, and which buffers are texels.
+  void reflect(std::span<const uint32_t> words);
   void makeLayout(Device& device, uint32_t pushBytes, VkShaderStageFlags stages);
   void release() noexcept;
   Device* device_ = nullptr;

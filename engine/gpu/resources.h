@@ -1,6 +1,7 @@
 // Buffers and images. Move-only owners; or views of memory that someone else owns (graph aliasing, a host's images).
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <span>
 #include <string>
@@ -16,13 +17,16 @@ enum class MemoryKind {
   ReadBack,  ///< host visible and coherent, mapped (cached where there is such a type); device writes
 };
 
+/// What a shader takes the texels of an image or a buffer for.
+enum class TexelType : uint8_t { Float, Uint, Int };
+
 /// Bytes of a texel as download() lays it out (depth formats: the depth aspect). Throws BadInput for formats Radivox does not use.
 uint32_t texelBytes(VkFormat format);
 bool isDepthFormat(VkFormat format);
 
 /// Bindings show at most Capabilities::maxStorageBufferRange bytes (128 MiB on lavapipe): what lies beyond in a larger buffer is
 /// reached by device address, or by binding pieces of it (BoundResource's offset and range). bytes() is always the whole.
-/// Usage of every buffer: storage | transfer src/dst | indirect | uniform | shader device address (+ vertex/index).
+/// Usage of every buffer: storage | uniform texel | transfer src/dst | indirect | uniform | shader device address (+ vertex/index).
 class Buffer {
  public:
   Buffer() = default;
@@ -30,7 +34,7 @@ class Buffer {
   Buffer(Device& device, const std::string& name, VkDeviceSize bytes, MemoryKind kind = MemoryKind::Device);
   /// A buffer bound into memory that the caller owns (transient aliasing) and allocated with a device address.
   Buffer(Device& device, const std::string& name, VkDeviceSize bytes, VkDeviceMemory memory, VkDeviceSize offset);
-  /// A host's buffer, for imports: usage STORAGE at least. Not destroyed by us. `address` 0: nothing may read it by address.
+  /// A host's buffer, for imports: usage STORAGE at least. Not destroyed by us. `address` 0: nothing may read it by address. It has no texels().
   Buffer(const std::string& name, VkBuffer buffer, VkDeviceSize bytes, VkDeviceAddress address);
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
@@ -42,6 +46,9 @@ class Buffer {
   void* mapped() const { return mapped_; }
   const std::string& name() const { return name_; }
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
+  /// The whole as texels, for a BindingType::TexelBuffer: Uint as words (R32_UINT), Float as vec4 (RGBA32F). Made at the first call. Throws OutOfMemory
+  /// where the device's texel buffers are shorter, Unsupported for a host's buffer.
+  VkBufferView texels(TexelType type) const;
 
   static VkMemoryRequirements requirements(Device& device, VkDeviceSize bytes);
 
@@ -49,6 +56,7 @@ class Buffer {
   void release() noexcept;
   Device* device_ = nullptr;
   VkBuffer buffer_ = VK_NULL_HANDLE;
+  mutable std::array<VkBufferView, 2> texels_{};  ///< Float, Uint
   VkDeviceMemory ownedMemory_ = VK_NULL_HANDLE;
   VkDeviceSize bytes_ = 0;
   VkDeviceAddress address_ = 0;

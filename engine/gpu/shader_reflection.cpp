@@ -17,6 +17,7 @@ enum Op : uint32_t {
   OpDecorate = 71,
 };
 constexpr uint32_t kDecorationBinding = 33;
+constexpr uint32_t kDimBuffer = 5;
 
 }  // namespace
 
@@ -37,7 +38,7 @@ void reflectImageKinds(std::span<const uint32_t> words, std::vector<ImageKind>& 
         scalars[operand(0)] = TexelType::Float;
         break;
       case OpTypeImage:
-        images[operand(0)] = {scalars[operand(1)], operand(4) != 0};
+        images[operand(0)] = {scalars[operand(1)], operand(4) != 0, operand(2) == kDimBuffer};
         break;
       case OpTypeSampledImage:
         images[operand(0)] = images[operand(1)];

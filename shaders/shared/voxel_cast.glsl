@@ -24,6 +24,7 @@
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #extension GL_KHR_shader_subgroup_vote : require
+#define RADIVOX_TEXELS
 #include "shared/clearance.h"
 #include "shared/traversal.glsl"
 #include "shared/voxel_lookup.glsl"
@@ -43,9 +44,12 @@ const float kInFront = -1e-3;          // behind a plane by this still counts as
 const uint kHitNothing = kNone;           // face: the ray left the grid
 const uint kHitBack = kNone - 1u;         // face: stopped by the back of a one-sided surface
 
-layout(set = 0, binding = RADIVOX_BIND_PLANES, scalar) readonly buffer RadivoxPlanes { uvec2 planes[]; };
-layout(set = 0, binding = RADIVOX_BIND_PLANE_EXTRAS, scalar) readonly buffer RadivoxPlaneExtras { uint planeExtras[]; };
-layout(set = 0, binding = RADIVOX_BIND_CAST_FIRST, scalar) readonly buffer RadivoxCastFirst { uint castFirst[]; };
+// Words as texels: what lanes load from scattered places, CPU devices fetch for all lanes at once from these, and lane by lane from storage buffers.
+layout(set = 0, binding = RADIVOX_BIND_PLANES) uniform usamplerBuffer planeTexels;
+layout(set = 0, binding = RADIVOX_BIND_PLANE_EXTRAS) uniform usamplerBuffer planeExtraTexels;
+layout(set = 0, binding = RADIVOX_BIND_CAST_FIRST) uniform usamplerBuffer castFirstTexels;
+uvec2 planeAt(uint i) { return uvec2(texelFetch(planeTexels, int(2u * i)).x, texelFetch(planeTexels, int(2u * i + 1u)).x); }
+uint castFirst(uint voxel) { return texelFetch(castFirstTexels, int(voxel)).x; }
 
 // The grid in registers.
 uvec3 castSize;
@@ -56,13 +60,51 @@ void castBegin() {
 }
 
 #ifdef RADIVOX_BIND_CLEARANCE
-layout(set = 0, binding = RADIVOX_BIND_CLEARANCE, scalar) readonly buffer RadivoxClearance { uint clearance[]; };
-float clearanceAt(vec3 voxel) {
-  uint i = clearanceIndex(uvec3(ivec3(voxel) + 1), castSize);
-  uint word = clearance[i >> 2];
-  word = (i & 1u) != 0u ? word >> 8 : word;
-  word = (i & 2u) != 0u ? word >> 16 : word;
-  return float(word & 0xffu);
+layout(set = 0, binding = RADIVOX_BIND_CLEARANCE) uniform usamplerBuffer clearanceTexels;
+
+// castMarch, by clearance. As traversalLeave() for the cube, but in a grid mirrored so that the ray goes up every axis: negation is exact, so times
+// keep their bits, and a pass needs no test of which way the ray goes.
+bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live) {
+  vec3 turn = 2.0 * ray.forward - 1.0;
+  vec3 back = 1.0 - ray.forward;
+  vec3 voxel = cursor.voxel * turn - back;
+  vec3 origin = ray.origin * turn;
+  vec3 inverse = abs(ray.inverse);
+  vec3 direction = abs(ray.direction);
+  float time = cursor.time;
+  // clearanceIndex() of the mirrored voxel: what it adds up to along x and y is exact in floats.
+  float row = float(clearanceRowBytes(castSize));
+  vec2 across = vec2(1.0, row) * turn.xy;
+  float base = dot(vec2(1.0, row), ray.forward.xy);
+  int slice = int(clearanceRowBytes(castSize) * (castSize.y + 2u));
+  int up = ray.forward.z > 0.5 ? slice : -slice;
+  int ground = ray.forward.z > 0.5 ? slice : 0;
+  bool moved = false;
+  // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
+  for (uint passes = live ? castSize.x + castSize.y + castSize.z + 5u : 0u; passes > 0u; --passes) {
+    uint i = uint(int(voxel.x * across.x + voxel.y * across.y + base) + int(voxel.z) * up + ground);
+    float clearance = float((texelFetch(clearanceTexels, int(i >> 2)).x >> (8u * (i & 3u))) & 0xffu);
+    if (clearance == 0.0) break;
+    moved = true;
+    precise vec3 plane = voxel + clearance;
+    precise vec3 times = (plane - origin) * inverse;
+    float exit = min(times.x, min(times.y, times.z));
+    bool x = times.x <= times.y && times.x <= times.z;
+    bool y = !x && times.y <= times.z;
+    bool z = !(x || y);
+    precise vec3 guess = floor(origin + exit * direction - 0.5 / 256.0);
+    guess = max(guess, voxel);
+    precise vec3 next = (guess + 1.0 - origin) * inverse;
+    bvec3 crossed = lessThan(next, vec3(exit));
+    crossed.x = crossed.x || (next.x == exit && !x);
+    crossed.y = crossed.y || (next.y == exit && z);
+    guess += vec3(crossed);
+    voxel = mix(guess, plane, bvec3(x, y, z));
+    time = exit;
+  }
+  cursor.voxel = (voxel + back) * turn;
+  cursor.time = time;
+  return moved;
 }
 #endif
 
@@ -79,21 +121,13 @@ uint castBrickDistance(uint brick) {
 
 // The empty box around the cursor's voxel; false: none, since the voxel may have faces or is outside.
 bool castEmptyBox(TraversalCursor cursor, out vec3 low, out vec3 high) {
-#ifdef RADIVOX_BIND_CLEARANCE
-  if (RADIVOX_SKIP == kSkipClearance) {
-    float c = clearanceAt(cursor.voxel);
-    low = cursor.voxel + 1.0 - c;
-    high = cursor.voxel + c;
-    return c > 0.0;
-  }
-#endif
   uvec3 voxel = uvec3(clamp(cursor.voxel, vec3(0.0), vec3(castSize - 1u)));
   uint brick = brickOf(voxel, castBricks);
   uint distance = RADIVOX_SKIP == kSkipBricks ? castBrickDistance(brick) : 0u;
   vec3 corner = vec3(voxel & ~3u);
   low = distance > 0u ? corner + 4.0 - 4.0 * float(distance) : cursor.voxel;
   high = distance > 0u ? corner + 4.0 * float(distance) : cursor.voxel + 1.0;
-  return !isOutside(cursor.voxel) && (distance > 0u || !hasBit(occupancy[brick], bitOf(voxel)));
+  return !isOutside(cursor.voxel) && (distance > 0u || !hasBit(brickBits(brick), bitOf(voxel)));
 }
 
 // Moves on, if `live`, until the cursor is in a voxel that may have faces, or outside. Returns whether it moved.
@@ -101,6 +135,9 @@ bool castEmptyBox(TraversalCursor cursor, out vec3 low, out vec3 high) {
 // Lanes that have arrived go along without moving until all have: every lane loads in every pass, which CPU devices, where a
 // masked load is a branch a lane, do in half the time.
 bool castMarch(TraversalRay ray, inout TraversalCursor cursor, bool live) {
+#ifdef RADIVOX_BIND_CLEARANCE
+  if (RADIVOX_SKIP == kSkipClearance) return marchByClearance(ray, cursor, live);
+#endif
   vec3 low, high;
   bool moving = castEmptyBox(cursor, low, high) && live;
   bool moved = moving;
@@ -122,13 +159,13 @@ float castDot(vec3 a, vec3 b) {
 }
 
 // The plane after plane `i` of a voxel, counted from 0.
-uvec2 nextPlane(uint voxel, uint i) { return planes[RADIVOX_VOXEL_COUNT + planeExtras[voxel] + i]; }
+uvec2 nextPlane(uint voxel, uint i) { return planeAt(RADIVOX_VOXEL_COUNT + texelFetch(planeExtraTexels, int(voxel)).x + i); }
 
 // The planes of `voxel` that lie on the plane of a point, bit by bit in their order, and whether there are others.
 uint ownPlanes(uint voxel, uvec3 coordinate, vec3 position, vec3 normal, out bool crowded) {
   uint own = 0u;
   crowded = false;
-  uvec2 plane = planes[voxel];
+  uvec2 plane = planeAt(voxel);
   if (plane.x >> 26 == 0u) return own;
   for (uint i = 0u; i < kFaceCount; ++i) {
     vec3 n = planeNormal(plane.x);
@@ -148,19 +185,26 @@ uint ownPlanes(uint voxel, uvec3 coordinate, vec3 position, vec3 normal, out boo
   return own;
 }
 
-// The face of the cursor's voxel that the ray hits before it leaves the voxel; kHitNothing: none (or `live` is false, or the cursor
-// is outside); kHitBack. Planes in `excluded` do not count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel
-// before had no faces. `random` is uniform. Lanes stay together, as in castMarch.
-uint castFace(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded, inout uint inFront, uint random) {
+// What a ray meets of a voxel's planes.
+struct PlaneHit {
+  uint voxel;
+  uint mask;    // faces of the voxel
+  uint faces;   // those that the ray may hit, and << 8 the directions from which it sees the plane; 0: it meets none
+  vec3 normal;  // of the plane, on the side that the ray sees; |x| + |y| + |z| = 1
+};
+
+// The first plane of the cursor's voxel that the ray meets before it leaves the voxel; none where `live` is false or the cursor is outside. Planes in
+// `excluded` do not count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel before had no faces.
+PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded, inout uint inFront) {
   uint wasInFront = inFront;
   inFront = 0u;
   uvec3 coordinate = uvec3(clamp(cursor.voxel, vec3(0.0), vec3(castSize - 1u)));
   uint brick = brickOf(coordinate, castBricks);
   uint bit = bitOf(coordinate);
-  uvec2 word = occupancy[brick];
+  uvec2 word = brickBits(brick);
   live = live && !isOutside(cursor.voxel) && hasBit(word, bit);
-  uint voxel = min(brickRank[brick] + countBitsBelow(word, bit), RADIVOX_VOXEL_COUNT - 1u);
-  uvec2 plane = planes[voxel];
+  uint voxel = min(rankOf(brick) + countBitsBelow(word, bit), RADIVOX_VOXEL_COUNT - 1u);
+  uvec2 plane = planeAt(voxel);
   uint mask = plane.x >> 26;
   vec3 exits = traversalExits(ray, cursor.voxel);
   float exit = min(exits.x, min(exits.y, exits.z));
@@ -174,9 +218,9 @@ uint castFace(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded
   vec3 bestNormal = vec3(0.0);
   uint bestFaces = 0u;
   bool more = live && mask != 0u;
-  for (uint i = 0u; subgroupAny(more); ++i) {
+  for (uint i = 0u; more; ++i) {
     vec3 n = planeNormal(plane.x);
-    bool counts = more && ((excluded >> i) & 1u) == 0u;
+    bool counts = ((excluded >> i) & 1u) == 0u;
     float slope = castDot(ray.direction, n);
     float side = slope > 0.0 ? -1.0 : 1.0;
     n = n * side;
@@ -218,18 +262,27 @@ uint castFace(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded
       uint seen_ = (looks & members) != 0u ? looks & members : looks & mask;
       bestFaces = looks << 8 | seen_;
     }
-    more = more && (plane.y & kPlaneMore) != 0u;
+    more = (plane.y & kPlaneMore) != 0u;
     if (more) plane = nextPlane(voxel, i);
   }
-  bool any_ = bestFaces != 0u;
-  precise vec3 weight = abs(bestNormal * ray.direction);
-  vec3 w = vec3((bestFaces >> facing.x) & 1u, (bestFaces >> facing.y) & 1u, (bestFaces >> facing.z) & 1u) * weight;
+  return PlaneHit(voxel, mask, bestFaces, bestNormal);
+}
+
+// The face that a ray hits of the plane that it meets; kHitNothing: it meets none; kHitBack. `random` is uniform.
+uint faceOfPlane(TraversalRay ray, PlaneHit hit, uint random) {
+  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(greaterThan(ray.direction, vec3(0.0)));
+  precise vec3 weight = abs(hit.normal * ray.direction);
+  vec3 w = vec3((hit.faces >> facing.x) & 1u, (hit.faces >> facing.y) & 1u, (hit.faces >> facing.z) & 1u) * weight;
   precise float two = w.x + w.y;
   precise float total = two + w.z;
   precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
   uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
-  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
-  return !any_ ? kHitNothing : (total > 0.0 ? face : kHitBack);
+  uint face = castFirst(hit.voxel) + uint(bitCount(hit.mask & ((1u << f) - 1u)));
+  return hit.faces == 0u ? kHitNothing : (total > 0.0 ? face : kHitBack);
+}
+
+uint castFace(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded, inout uint inFront, uint random) {
+  return faceOfPlane(ray, castPlane(ray, cursor, live, excluded, inFront), random);
 }
 
 #endif

@@ -8,7 +8,8 @@
 //   RADIVOX_BIND_FACE_MASK   faceMasks[]   u32 × V              hasFace(voxel, f)
 //   RADIVOX_BIND_FIRST_FACE  firstFaces[]  u32 × (V + 1)        faceIndex(voxel, f)             (needs FACE_MASK)
 //   RADIVOX_BIND_FACES       faces[]       Face × F
-// All are read only. What is not found is kNone. `voxel` is a compact index unless it is an ivec3 coordinate.
+// With RADIVOX_TEXELS defined, OCCUPANCY and RANK are read as texels, which CPU devices load for all lanes at once; then use brickBits() and
+// rankOf(). All are read only. What is not found is kNone. `voxel` is a compact index unless it is an ivec3 coordinate.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_LOOKUP_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_LOOKUP_GLSL
 #include "shared/voxel_codec.h"
@@ -19,21 +20,33 @@ bool isInside(ivec3 voxel) { return all(greaterThanEqual(voxel, ivec3(0))) && al
 #endif
 
 #ifdef RADIVOX_BIND_OCCUPANCY
+#ifdef RADIVOX_TEXELS
+layout(set = 0, binding = RADIVOX_BIND_OCCUPANCY) uniform usamplerBuffer occupancyTexels;
+uvec2 brickBits(uint brick) { return uvec2(texelFetch(occupancyTexels, int(2u * brick)).x, texelFetch(occupancyTexels, int(2u * brick + 1u)).x); }
+#else
 layout(set = 0, binding = RADIVOX_BIND_OCCUPANCY, scalar) readonly buffer RadivoxOccupancy { uvec2 occupancy[]; };
+uvec2 brickBits(uint brick) { return occupancy[brick]; }
+#endif
 bool isOccupied(ivec3 voxel) {
   if (!isInside(voxel)) return false;
-  return hasBit(occupancy[brickOf(uvec3(voxel), grid.bricks)], bitOf(uvec3(voxel)));
+  return hasBit(brickBits(brickOf(uvec3(voxel), grid.bricks)), bitOf(uvec3(voxel)));
 }
 #endif
 
 #ifdef RADIVOX_BIND_RANK
+#ifdef RADIVOX_TEXELS
+layout(set = 0, binding = RADIVOX_BIND_RANK) uniform usamplerBuffer rankTexels;
+uint rankOf(uint brick) { return texelFetch(rankTexels, int(brick)).x; }
+#else
 layout(set = 0, binding = RADIVOX_BIND_RANK, scalar) readonly buffer RadivoxRank { uint brickRank[]; };
+uint rankOf(uint brick) { return brickRank[brick]; }
+#endif
 uint voxelIndex(ivec3 voxel) {
   if (!isInside(voxel)) return kNone;
   uint brick = brickOf(uvec3(voxel), grid.bricks);
   uint bit = bitOf(uvec3(voxel));
-  uvec2 word = occupancy[brick];
-  return hasBit(word, bit) ? brickRank[brick] + countBitsBelow(word, bit) : kNone;
+  uvec2 word = brickBits(brick);
+  return hasBit(word, bit) ? rankOf(brick) + countBitsBelow(word, bit) : kNone;
 }
 #endif
 

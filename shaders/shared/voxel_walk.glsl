@@ -8,7 +8,7 @@
 // The face of `voxel` that stands for surface with unit normal n, drawn with probability n_k²: a face of another axis is mostly other surface's.
 // kHitBack: it has none. `apart`: faces that the surface is no part of, unless it has no others.
 uint faceTowards(uint voxel, vec3 n, uint apart, uint random) {
-  uint mask = planes[voxel].x >> 26;
+  uint mask = planeAt(voxel).x >> 26;
   uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
   precise vec3 squares = n * n;
   uint kept = mask & ~apart;
@@ -18,7 +18,7 @@ uint faceTowards(uint voxel, vec3 n, uint apart, uint random) {
   precise float total = two + w.z;
   precise float draw = float(random >> 8) * (1.0 / 16777216.0) * total;
   uint f = draw < w.x ? facing.x : (draw >= two && w.z > 0.0 ? facing.z : (w.y > 0.0 ? facing.y : facing.x));
-  uint face = castFirst[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
+  uint face = castFirst(voxel) + uint(bitCount(mask & ((1u << f) - 1u)));
   return total > 0.0 ? face : kHitBack;
 }
 
@@ -29,73 +29,61 @@ struct WalkHit {
   vec3 normal;    // of the triangle, unit, on the side that the ray sees
 };
 
-// Voxels are searched for triangles while the ray enters them before `nearDistance`; beyond, and where a voxel's list is empty (too many triangles),
-// its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from, `lift` (voxels) off it. Lanes stay together; all must call.
-WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random,
-                bool live) {
+// Voxels are searched for triangles while the ray enters them before `nearDistance`; beyond, and from the first voxel on whose list is empty (too many
+// triangles), its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from, `lift` (voxels) off it.
+//
+// CPU devices execute both sides of every branch, for all lanes: what a ray needs once is not in the loops.
+WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random, bool live) {
   WalkHit result = WalkHit(kHitNothing, 0.0, kNone, vec3(0.0));
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   bool atStart = true;
-  bool looking = live && nearDistance > 0.0;
-  bool going = live;
   TraversalCursor last = cursor;  // the voxel before, if it was searched for triangles and the ray stepped out of it
   bool hasLast = false;
-  while (subgroupAny(looking)) {
-    if (castMarch(way, cursor, looking)) atStart = hasLast = false;
-    looking = looking && !isOutside(cursor.voxel) && cursor.time < nearDistance;
-    uint voxel = looking ? voxelIndex(ivec3(cursor.voxel)) : 0u;
-    looking = looking && voxel != kNone;
-    voxel = looking ? voxel : 0u;
-    float time;
-    vec3 normal;
-    uint triangle, apart;
-    if (nearestTriangle(way, cursor, looking, voxel, own, lift, time, normal, triangle, apart)) {
-      precise vec3 unit = normal * preciseInverseSqrt(max(triangleDot(normal, normal), 1e-30));
-      result = WalkHit(faceTowards(voxel, unit, apart, random), time, triangle, unit);
-      looking = going = false;
-    }
-    bool noList = looking && triangleFirst[voxel] == triangleFirst[voxel + 1u];
-    if (subgroupAny(noList)) {
-      uint inFront = 0u;
-      uint found = castFace(way, cursor, noList, atStart ? excluded : 0u, inFront, random);
-      if (found != kHitNothing) {
-        result.face = found;
-        result.time = cursor.time;
-        looking = going = false;
-      }
-    }
-    if (looking) {
-      last = cursor;
-      hasLast = true;
-    }
-    TraversalCursor stepped = cursor;
-    traversalStep(way, stepped);
-    cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(looking));
-    cursor.time = looking ? stepped.time : cursor.time;
-    atStart = atStart && !looking;
+  bool met = false;
+  uint voxel = 0u, listed = 0u;
+  vec2 time = vec2(0.0, 1.0);
+  vec3 normal = vec3(0.0);
+  while (live && nearDistance > 0.0) {
+    if (castMarch(way, cursor, true)) atStart = hasLast = false;
+    voxel = isOutside(cursor.voxel) || cursor.time >= nearDistance ? kNone : voxelIndex(ivec3(cursor.voxel));
+    if (voxel == kNone) break;
+    uint first = triangleFirst(voxel), end = triangleFirst(voxel + 1u);
+    if (first == end) break;
+    met = nearestTriangle(way, cursor, first, end, own, lift, time, normal, listed);
+    if (met) break;
+    last = cursor;
+    hasLast = true;
+    traversalStep(way, cursor);
+    atStart = false;
   }
   // A surface that bends passes between the planes of two voxels. Where the first of them was searched for triangles and none was met, the ray is in
   // front of whatever its planes say it has crossed.
   uint inFront = 0u;
-  if (subgroupAny(going && hasLast)) {
-    uint crossed = castFace(way, last, going && hasLast, 0u, inFront, random);
-    inFront = going && hasLast ? (crossed == kHitNothing ? inFront : 0x3fu) : 0u;
+  if (live && !met && hasLast) {
+    PlaneHit crossed = castPlane(way, last, true, 0u, inFront);
+    if (crossed.faces != 0u) inFront = 0x3fu;
   }
-  while (subgroupAny(going)) {
-    if (castMarch(way, cursor, going)) {
+  PlaneHit plane = PlaneHit(0u, 0u, 0u, vec3(0.0));
+  while (live && !met) {
+    if (castMarch(way, cursor, true)) {
       inFront = 0u;
       atStart = false;
     }
-    going = going && !isOutside(cursor.voxel);
-    uint found = castFace(way, cursor, going, atStart ? excluded : 0u, inFront, random);
-    result.face = going ? found : result.face;
-    result.time = going ? cursor.time : result.time;
-    going = going && found == kHitNothing;
-    TraversalCursor stepped = cursor;
-    traversalStep(way, stepped);
-    cursor.voxel = mix(cursor.voxel, stepped.voxel, bvec3(going));
-    cursor.time = going ? stepped.time : cursor.time;
+    if (isOutside(cursor.voxel)) break;
+    plane = castPlane(way, cursor, true, atStart ? excluded : 0u, inFront);
+    if (plane.faces != 0u) break;
+    traversalStep(way, cursor);
     atStart = false;
+  }
+  result.face = faceOfPlane(way, plane, random);
+  result.time = cursor.time;
+  if (met) {
+    result.triangle = listedTriangle(listed);
+    if (!kCorners) normal = triangleNormal(result.triangle);
+    result.normal = triangleDot(normal, way.direction) > 0.0 ? -normal : normal;
+    precise float at = time.x * preciseReciprocal(time.y);
+    result.time = at;
+    result.face = faceTowards(voxel, result.normal, listedApart(listed), random);
   }
   return result;
 }

@@ -4,7 +4,7 @@
 
 #include "modules/clustered_voxel/sky/sky.h"
 #include "modules/clustered_voxel/structure.h"
-#include "shaders/shared/triangle_corners.h"
+#include "modules/clustered_voxel/voxelize/triangles.h"
 
 namespace radivox::clustered_voxel {
 
@@ -62,8 +62,7 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.read("triangle", "id + 1 of the pixel's triangle");
   d.readIf(near_ > 0.f, "triangle_first", "first triangle of each voxel", kNoTriangles);
   d.readIf(near_ > 0.f, "triangle_ids", "triangles of each voxel", kNoTriangles);
-  d.readIf(near_ > 0.f && d.traits.triangleCount <= shared::kMostCornerTriangles, "corners", "corners of triangles",
-           "gather_pixels.near is 0, or there are too many triangles for an image");
+  readCorners(d, near_ > 0.f, "gather_pixels.near is 0");
   d.readIf(near_ > 0.f, "scene.vertices", "Vertex", kNoTriangles);
   d.readIf(near_ > 0.f, "scene.indices", "three a triangle", kNoTriangles);
   constexpr const char* kNoShadow =
@@ -111,7 +110,7 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   hasSky_ = context.has("sky") && context.has("scene.sky");
   hasEmitted_ = context.has("emitted") && context.has("emission");
   std::vector<BindingType> bindings(32, kB);
-  for (const size_t map : {25, 26, 28}) bindings[map] = BindingType::SampledImage;
+  for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
   for (const size_t image : {6, 7, 11, 15, 30, 31}) bindings[image] = kI;
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
@@ -186,7 +185,7 @@ void GatherPixels::record(graph::RecordContext& context) {
                  map("shadow_depth"),
                  map("shadow_triangle"),
                  optional("face_irradiance", hasShadow_),
-                 context.has("corners") ? context.image("corners") : absent_,
+                 optional("corners", context.has("corners")),
                  optional("sky_irradiance", context.has("sky_irradiance")),
                  hasEmitted_ ? context.image("raw_emitted") : absent_,
                  hasSky_ ? context.image("raw_sky") : absent_});

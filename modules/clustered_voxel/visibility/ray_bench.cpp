@@ -50,7 +50,6 @@ RayBench::RayBench(gpu::Device& device, const graph::Executor& executor, const s
 gpu::Pipeline RayBench::makePipeline(uint32_t task) const {
   std::vector<gpu::BindingType> bindings(23, gpu::BindingType::StorageBuffer);
   bindings[9] = gpu::BindingType::UniformBuffer;
-  bindings[21] = gpu::BindingType::SampledImage;
   const uint32_t near = executor_.findGrown(node_ + ".triangle_ids").empty() ? 0 : 1;
   const uint32_t masked = near != 0 && settings_.alphaMasked ? 1 : 0;
   return {
@@ -60,7 +59,7 @@ gpu::Pipeline RayBench::makePipeline(uint32_t task) const {
           .bindings = std::move(bindings),
           .pushConstantBytes = 24,
           .constants = {
-              {0, settings_.skip}, {3, near}, {4, masked}, {5, task}, {6, executor_.findImage(node_ + ".corners") != nullptr ? 1u : 0u}}}};
+              {0, settings_.skip}, {3, near}, {4, masked}, {5, task}, {6, executor_.findBuffer(node_ + ".corners") != nullptr ? 1u : 0u}}}};
 }
 
 void RayBench::sortRows() {
@@ -115,7 +114,7 @@ void RayBench::record(gpu::Commands& commands, const gpu::Pipeline& pipeline, co
     const std::vector<const gpu::Buffer*> found = executor_.findGrown(node_ + "." + port);
     return found.empty() ? grid : *found.front();
   };
-  const gpu::Image absent, *corners = executor_.findImage(node_ + ".corners");
+  const gpu::Buffer* corners = executor_.findBuffer(node_ + ".corners");
   for (size_t i = 0; i < chunks_.size(); ++i) {
     const Chunk& chunk = chunks_[i];
     const uint64_t count = uint64_t{chunk.rows} * settings_.raysPerFace;
@@ -141,7 +140,7 @@ void RayBench::record(gpu::Commands& commands, const gpu::Pipeline& pipeline, co
                              buffer("scene.materials"),
                              buffer("scene.textures"),
                              pieces_ ? pieces_ : grid,
-                             corners != nullptr ? *corners : absent,
+                             corners != nullptr ? *corners : grid,
                              {times_, chunk.firstRay * sizeof(float), count * sizeof(float)}});
     struct {
       uint32_t firstFace, rowCount, rayCount;

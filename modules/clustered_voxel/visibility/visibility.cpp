@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "modules/clustered_voxel/visibility/directions.h"
+#include "modules/clustered_voxel/voxelize/triangles.h"
 #include "shaders/clustered_voxel/visibility/visibility.h"
 #include "shaders/shared/clearance.h"
-#include "shaders/shared/triangle_corners.h"
 #include "shaders/shared/visibility_row.h"
 
 namespace radivox::clustered_voxel {
@@ -20,7 +20,6 @@ using shared::kRowsPerChunk;
 
 constexpr size_t kTraceBindings = 23, kReuseBindings = 26;
 constexpr size_t kDirectionsBinding = 9;
-constexpr size_t kCornersBinding = 21;
 constexpr uint32_t kTracePushBytes = 24;
 
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
@@ -80,8 +79,7 @@ void Visibility::declare(graph::Declaration& d) {
                            "scene.materials", "scene.textures"})
     leaveOut(d.read(name, "triangles of each voxel"));
   leaveOut(d.modify("pieces", "where rays start on the triangles of each voxel; freed once all are traced"));
-  d.readIf(triangles_ > 0.f && d.traits.triangleCount <= shared::kMostCornerTriangles, "corners", "corners of triangles",
-           "visibility.triangles=0, or there are too many triangles for an image");
+  readCorners(d, triangles_ > 0.f, "visibility.triangles=0");
   const Extent faces = Extent::of("faces");
   d.write("row_start", Shape::buffer(4, faces * (kRowsPerChunk + 1) / kRowsPerChunk + (kRowsPerChunk + 1)),
           "first bit of each row within its chunk");
@@ -114,10 +112,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   scan_ = std::make_unique<gpu::Scan>(device);
   const auto make = [&](std::string_view shader, size_t bindings, uint32_t pushBytes, std::vector<gpu::SpecializationConstant> constants) {
     std::vector<BindingType> types(bindings, kB);
-    if (bindings >= kTraceBindings) {
-      types[kDirectionsBinding] = BindingType::UniformBuffer;
-      types[kCornersBinding] = BindingType::SampledImage;
-    }
+    if (bindings >= kTraceBindings) types[kDirectionsBinding] = BindingType::UniformBuffer;
     return gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = shader, .bindings = std::move(types), .pushConstantBytes = pushBytes, .constants = std::move(constants)});
@@ -343,7 +338,7 @@ void Visibility::recordTrace(graph::RecordContext& context, uint32_t chunk) {
                                                  optional("scene.materials"),
                                                  optional("scene.textures"),
                                                  ids.empty() ? context.buffer("grid") : *context.grown("pieces").front(),
-                                                 context.has("corners") ? context.image("corners") : absent_};
+                                                 context.has("corners") ? context.buffer("corners") : context.buffer("grid")};
   const bool some = keep_ && kept_.reuses();
   if (some) kept_.recordReuse(context, bindings, &tracePush, rows);
   const gpu::Buffer& todo = some ? context.buffer("todo") : context.buffer("grid");

@@ -83,7 +83,6 @@ class Visibility : public graph::Node {
       traceBricks_, traceSomeBricks_, merge_, fill_;
   KeptHits kept_;
   gpu::Buffer directions_;
-  gpu::Image absent_;  ///< for optional images
   std::unique_ptr<gpu::Scan> scan_;
   shared::Grid grid_{};
   VkDeviceSize maxRange_ = 0;

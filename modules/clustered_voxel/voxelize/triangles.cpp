@@ -14,6 +14,13 @@ namespace {
 const char* piecesPort(const graph::RecordContext& context) { return context.has("pieces") ? "pieces" : "own_pieces"; }
 }  // namespace
 
+graph::Port& readCorners(graph::Declaration& d, bool wanted, const std::string& unwanted) {
+  const auto within = [](uint64_t amount, uint64_t limit) { return limit == 0 || amount <= limit; };  // 0: no device is known
+  const uint64_t bytes = uint64_t{d.traits.triangleCount} * shared::kCornerBytes;
+  const bool fits = within(bytes, d.capabilities.maxStorageBufferRange) && within(bytes / 16, d.capabilities.maxTexelBufferElements);
+  return d.readIf(wanted && fits, "corners", "corners of triangles", unwanted + ", or there are too many triangles for one buffer");
+}
+
 Triangles::Triangles()
     : table_({TrianglePass::methodParam(&method_),
               params::number("most", &most_, {1, 4096}, "voxels met by more triangles have no list", params::Invalidates::Rerun),
@@ -45,9 +52,8 @@ void Triangles::declare(graph::Declaration& d) {
                                 "middle of each triangle in its voxel (unorm 10:10:10), its area there (float bits, h²)");
   pieces.growable = pieces.optional = true;
   if (apart_) d.write("own_pieces", {}, "the same where nobody reads them; freed at once").growable = true;
-  d.write("corners",
-          Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, uint64_t{3} * shared::kCornerRow, Extent::of("triangles") / shared::kCornerRow + 1),
-          "corners of each triangle (grid space) and its normal, three texels each")
+  d.write("corners", Shape::buffer(shared::kCornerBytes, Extent::of("triangles")),
+          "corners of each triangle (grid space) and its normal: shared/triangle_corners.h")
       .optional = true;
   d.publishCount("triangle_entries", "", 0);
   d.scratch("next", Shape::buffer(4, voxels + 1), "triangles met, then the next free place of each voxel", use | graph::UseTransfer);
@@ -78,7 +84,7 @@ void Triangles::prepare(graph::PrepareContext& context) {
                                                                 .pushConstantBytes = 4});
   if (context.has("corners"))
     corners_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/corners.comp",
-                                                              .bindings = {kB, kB, kB, gpu::BindingType::StorageImage},
+                                                              .bindings = {kB, kB, kB, kB},
                                                               .pushConstantBytes = 4});
   scan_ = std::make_unique<gpu::Scan>(device);
 }
@@ -103,7 +109,7 @@ void Triangles::record(graph::RecordContext& context) {
     if (context.has("corners")) {
       const auto triangles = static_cast<uint32_t>(context.count("triangles"));
       commands.bind(corners_,
-                    {context.buffer("grid"), context.buffer("scene.vertices"), context.buffer("scene.indices"), context.image("corners")});
+                    {context.buffer("grid"), context.buffer("scene.vertices"), context.buffer("scene.indices"), context.buffer("corners")});
       commands.push(triangles);
       commands.dispatchItems(triangles, 64);
     }

@@ -27,8 +27,8 @@ layout(set = 0, binding = 10, scalar) readonly buffer DirectionBuffer { vec2 dir
 layout(set = 0, binding = 11, rgba32f) writeonly uniform image2D rawImage;
 #include "shared/scene.h"
 layout(set = 0, binding = 15, r32ui) readonly uniform uimage2D triangleImage;
-layout(set = 0, binding = 16, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
-layout(set = 0, binding = 17, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
+layout(set = 0, binding = 16) uniform usamplerBuffer triangleFirstTexels;
+layout(set = 0, binding = 17) uniform usamplerBuffer triangleIdTexels;
 layout(set = 0, binding = 18, scalar) readonly buffer Vertices { Vertex vertices[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 20, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
@@ -40,7 +40,7 @@ layout(set = 0, binding = 25) uniform sampler2DArray shadowDepth;
 layout(set = 0, binding = 26) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 27, scalar) readonly buffer FaceIrradiance { vec3 faceIrradiance[]; };
 layout(constant_id = 4) const bool kCorners = false;  // triangleCorners is there
-layout(set = 0, binding = 28) uniform sampler2D triangleCorners;
+layout(set = 0, binding = 28) uniform samplerBuffer triangleCorners;
 layout(constant_id = 5) const bool kSky = false;  // faceIrradiance holds the sky's light, which no shadow map tells
 layout(set = 0, binding = 29, scalar) readonly buffer SkyIrradiance { vec3 skyIrradiance[]; };
 layout(constant_id = 6) const bool kSkyImage = false;
@@ -62,6 +62,7 @@ layout(push_constant, scalar) uniform Push {
   uvec2 skyInfo;       // of scene.info
   uvec2 emission;      // of B_e of each face
 };
+#define RADIVOX_TEXELS
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_walk.glsl"
 #include "shared/light.glsl"
@@ -105,7 +106,7 @@ void main() {
   uint place = min(i / blockCount, 15u);
   uint block = i % blockCount;
   uvec2 pixel = uvec2(block % blocks.x, block / blocks.x) * 4u + uvec2(place & 3u, place >> 2);
-  // No lane leaves early (castMarch): those without a pixel, or with the sky in it, have no rays.
+  // Lanes without a pixel, or with the sky in it, have no rays.
   bool isPixel = i / blockCount < 16u && pixel.x < width && pixel.y < height;
   vec4 position = isPixel ? imageLoad(positionImage, ivec2(pixel)) : vec4(0.0);
   uint end = position.w != 0.0 ? rays : 0u;
@@ -128,28 +129,25 @@ void main() {
 
   vec4 sum = vec4(0.0);
   vec3 skySum = vec3(0.0), emittedSum = vec3(0.0);
-  for (uint ray = 0u; subgroupAny(ray < end); ++ray) {
-    bool busy = ray < end;
-    vec2 square = fract(directions[place * rays + min(ray, rays - 1u)] + shift);
+  for (uint ray = 0u; ray < end; ++ray) {
+    vec2 square = fract(directions[place * rays + ray] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
     TraversalRay way = makeTraversalRay(origin, (t * cos(turn) + b * sin(turn)) * radius + n * sqrt(1.0 - square.x));
-    WalkHit hit = walkRay(way, start, excluded, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray), busy);
-    bool isFace = busy && hit.face < kHitBack;
+    WalkHit hit = walkRay(way, start, excluded, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray), true);
+    bool isFace = hit.face < kHitBack;
     uint face = isFace ? hit.face : 0u;
     vec3 radiosity = faceRadiosity[face];
     // Close by, a voxel is a coarse patch of light and shadow: what is sunlit at the hit itself counts.
     bool exact = isFace && hit.triangle != kNone;
-    if (kShadow && subgroupAny(exact)) {
-      if (exact) {
-        vec3 at = position.xyz + (kNearLift * n + hit.time * way.direction) * grid.h;
-        vec3 change = directIrradiance(at, hit.normal, hit.triangle) - faceIrradiance[face];
-        if (kSky) change += skyIrradiance[face];
-        radiosity = max(radiosity + decodeAlbedo(faces[face].albedo) * change, vec3(0.0));
-      }
+    if (kShadow && exact) {
+      vec3 at = position.xyz + (kNearLift * n + hit.time * way.direction) * grid.h;
+      vec3 change = directIrradiance(at, hit.normal, hit.triangle) - faceIrradiance[face];
+      if (kSky) change += skyIrradiance[face];
+      radiosity = max(radiosity + decodeAlbedo(faces[face].albedo) * change, vec3(0.0));
     }
     sum.xyz += isFace ? radiosity : vec3(0.0);
     if (kEmitted && isFace) emittedSum += Emission(emission).of[face];
-    bool missed = busy && hit.face == kHitNothing;
+    bool missed = hit.face == kHitNothing;
     sum.w += missed ? 1.0 : 0.0;
     if (kSkyImage && missed) {
       SceneInfo info = InfoAt(skyInfo).info;

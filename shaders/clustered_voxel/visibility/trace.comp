@@ -26,60 +26,48 @@ void main() {
   uint slot = item % lanes;
   uint first = (item / lanes) * kRaysPerLane;
   uint rows = kSomeRays ? order[kRowsPerChunk] : rowCount;
-  if (kSomeRays && slot - gl_LocalInvocationID.x >= rows) return;  // the whole group, but of others no lane (see castMarch):
-  // those without a row follow the last one's and write nothing.
-  uint row = order[min(slot, rows - 1u)];
+  if (slot >= rows) return;
+  uint row = order[slot];
   uint left = rayBits(rayCount, first);  // rays to go, a bit each
   if (kSomeRays) left = todo[row * rayWords(rayCount) + first / kRaysPerLane];
-  if (slot >= rows) left = 0u;
-  bool idle = left == 0u;
   uint at = first;
   uint s = firstFace + row;
   Start start = startOf(s);
 
   if (kNear) {
-    for (; subgroupAny(left != 0u); left &= left - 1u) {
-      at = left != 0u ? first + uint(findLSB(left)) : at;
+    for (; left != 0u; left &= left - 1u) {
+      at = first + uint(findLSB(left));
       vec3 about;
       uint own;
       TraversalRay way = rayFromPiece(start, at, about, own);
-      WalkHit hit = walkRay(way, voxelAt(way.origin), start.excluded, own, kPieceLift, triangleDistance, rayRandom(start.seed, at), left != 0u);
-      if (left != 0u) hits[row * rayCount + at] = hitWord(hit.face, hit.time, way.direction);
+      WalkHit hit = walkRay(way, voxelAt(way.origin), start.excluded, own, kPieceLift, triangleDistance, rayRandom(start.seed, at), true);
+      hits[row * rayCount + at] = hitWord(hit.face, hit.time, way.direction);
     }
     return;
   }
 
-  // Lanes go on to their next ray each on its own; those that wait do so only for the longest march.
-  TraversalRay way = makeTraversalRay(start.origin, start.normal);
-  TraversalCursor cursor = TraversalCursor(vec3(start.voxel), 0.0);
+  // One loop over the voxels of all of a lane's rays, so that lanes go on to their next ray each on its own.
+  TraversalRay way;
+  TraversalCursor cursor;
   uint inFront = 0u;
   bool fresh = true;
-  uint last = 0u;
-  while (subgroupAny(left != 0u)) {
-    bool busy = left != 0u;
-    at = busy ? first + uint(findLSB(left)) : at;
-    TraversalRay next = makeTraversalRay(start.origin, alongNormal(decodeDirection(directions[start.directions + at]), start.normal));
-    way.direction = mix(way.direction, next.direction, bvec3(fresh));
-    way.inverse = mix(way.inverse, next.inverse, bvec3(fresh));
-    way.forward = mix(way.forward, next.forward, bvec3(fresh));
-    cursor.voxel = mix(cursor.voxel, vec3(start.voxel), bvec3(fresh));
-    cursor.time = fresh ? 0.0 : cursor.time;
-    inFront = fresh ? 0u : inFront;
+  while (left != 0u) {
+    if (fresh) {
+      at = first + uint(findLSB(left));
+      way = makeTraversalRay(start.origin, alongNormal(decodeDirection(directions[start.directions + at]), start.normal));
+      cursor = TraversalCursor(vec3(start.voxel), 0.0);
+      inFront = 0u;
+    }
     // On from the voxel just looked at, or from the face's own if there is nothing else in it.
-    bool stay = fresh && (start.crowded || kFrame == 1);
-    TraversalCursor stepped = cursor;
-    traversalStep(way, stepped);
-    cursor.voxel = mix(stepped.voxel, cursor.voxel, bvec3(stay));
-    cursor.time = stay ? cursor.time : stepped.time;
+    if (!fresh || !(start.crowded || kFrame == 1)) traversalStep(way, cursor);
     bool atStart = fresh && start.crowded;
-    if (castMarch(way, cursor, busy && !atStart)) inFront = 0u;
+    if (castMarch(way, cursor, !atStart)) inFront = 0u;
     bool outside = isOutside(cursor.voxel);
-    uint hit = castFace(way, cursor, busy, atStart ? start.excluded : 0u, inFront, rayRandom(start.seed, at));
-    fresh = !busy || outside || hit != kHitNothing;
-    uint result = hitWord(outside ? kHitNothing : hit, cursor.time, way.direction);
-    // Written in every pass: overwritten until the ray is done, and again as it was once all are.
-    last = busy ? result : last;
-    if (!idle) hits[row * rayCount + at] = last;
-    left = fresh ? left & (left - 1u) : left;
+    uint hit = castFace(way, cursor, true, atStart ? start.excluded : 0u, inFront, rayRandom(start.seed, at));
+    fresh = outside || hit != kHitNothing;
+    if (fresh) {
+      hits[row * rayCount + at] = hitWord(outside ? kHitNothing : hit, cursor.time, way.direction);
+      left &= left - 1u;
+    }
   }
 }

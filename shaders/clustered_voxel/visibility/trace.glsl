@@ -38,25 +38,24 @@ layout(push_constant, scalar) uniform Push {
 #include "shared/voxel_cast.glsl"
 layout(constant_id = 3) const bool kNear = false;    // rays start on pieces of surface, and test triangles in their first voxels
 layout(constant_id = 4) const bool kMasked = false;  // some material has an alpha mask
-layout(set = 0, binding = 13, scalar) readonly buffer TriangleFirst { uint triangleFirst[]; };
-layout(set = 0, binding = 14, scalar) readonly buffer TriangleIds { uint triangleIds[]; };
+layout(set = 0, binding = 13) uniform usamplerBuffer triangleFirstTexels;
+layout(set = 0, binding = 14) uniform usamplerBuffer triangleIdTexels;
 layout(set = 0, binding = 15, scalar) readonly buffer Vertices { Vertex vertices[]; };
 layout(set = 0, binding = 16, scalar) readonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 17, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Textures { Texture textures[]; };
-layout(set = 0, binding = 20, scalar) readonly buffer Pieces { uvec2 pieces[]; };  // middle, area (clustered_voxel.triangles)
+layout(set = 0, binding = 20) uniform usamplerBuffer pieceTexels;  // two words each: middle, area (clustered_voxel.triangles)
 layout(constant_id = 6) const bool kCorners = false;  // triangleCorners is there
-layout(set = 0, binding = 21) uniform sampler2D triangleCorners;
+layout(set = 0, binding = 21) uniform samplerBuffer triangleCorners;
 #include "shared/voxel_walk.glsl"
 
 const float kPieceLift = 2e-3;  // voxels: pieces' middles are good to 1e-3
 
 vec3 unitNormal(uint id) {
   if (kCorners) {
-    ivec2 at = cornerTexel(id);
-    return vec3(texelFetch(triangleCorners, at, 0).w, texelFetch(triangleCorners, at + ivec2(1, 0), 0).w,
-                texelFetch(triangleCorners, at + ivec2(2, 0), 0).w);
+    int at = int(3u * id);
+    return vec3(texelFetch(triangleCorners, at).w, texelFetch(triangleCorners, at + 1).w, texelFetch(triangleCorners, at + 2).w);
   }
   return triangleNormal(id);
 }
@@ -64,11 +63,11 @@ vec3 unitNormal(uint id) {
 // What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back) and is part of the face; n:
 // that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
-  uint listed = triangleIds[entry];
+  uint listed = triangleIds(entry);
   vec3 front = unitNormal(listedTriangle(listed));
   vec3 unit = backs ? -front : front;
   n = unit;
-  precise float weight = max((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1], 0.0) * uintBitsToFloat(pieces[entry].y);
+  precise float weight = max((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1], 0.0) * uintBitsToFloat(texelFetch(pieceTexels, int(2u * entry + 1u)).x);
   return ((listedApart(listed) >> f) & 1u) != 0u ? 0.0 : weight;
 }
 
@@ -81,7 +80,7 @@ struct Surface {
 };
 
 Surface surfaceOf(uint voxel, uint f) {
-  Surface surface = Surface(triangleFirst[voxel], triangleFirst[voxel + 1u], false, 0.0);
+  Surface surface = Surface(triangleFirst(voxel), triangleFirst(voxel + 1u), false, 0.0);
   vec3 n;
   for (uint e = surface.first; e < surface.end; ++e) surface.total += pieceWeight(e, f, false, n);
   if (surface.total > 0.0) return surface;
@@ -164,8 +163,8 @@ TraversalRay rayFromPiece(Start start, uint at, out vec3 about, out uint own) {
     // Strata of the surface, in an order that has nothing to do with that of the directions.
     uint turn = hashBits(start.seed ^ 0x51ed270bu);
     uint entry = pieceAt(start.surface, start.f, (float((at * 11u + turn) % rayCount) + 0.5) / float(rayCount), about);
-    own = listedTriangle(triangleIds[entry]);
-    from = vec3(start.coordinate) + decodePosition(pieces[entry].x) + kPieceLift * about;
+    own = listedTriangle(triangleIds(entry));
+    from = vec3(start.coordinate) + decodePosition(texelFetch(pieceTexels, int(2u * entry)).x) + kPieceLift * about;
   }
   return makeTraversalRay(from, alongNormal(decodeDirection(directions[start.directions + at]), about));
 }

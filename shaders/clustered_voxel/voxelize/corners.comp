@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "shared/voxel_lookup.glsl"
 layout(set = 0, binding = 1, scalar) readonly buffer Vertices { Vertex vertices[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer Indices { uint indices[]; };
-layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D cornerImage;
+layout(set = 0, binding = 3, scalar) writeonly buffer Corners { vec4 corners[]; };
 layout(push_constant, scalar) uniform Push { uint triangleCount; };
 
 void main() {
@@ -25,8 +25,7 @@ void main() {
   precise float two = across.x * across.x + across.y * across.y;
   precise float squared = two + across.z * across.z;
   precise vec3 n = across * preciseInverseSqrt(max(squared, 1e-30));
-  ivec2 at = cornerTexel(id);
-  imageStore(cornerImage, at, vec4(toGridSpace(grid, a), n.x));
-  imageStore(cornerImage, at + ivec2(1, 0), vec4(toGridSpace(grid, b), n.y));
-  imageStore(cornerImage, at + ivec2(2, 0), vec4(toGridSpace(grid, c), n.z));
+  corners[3u * id] = vec4(toGridSpace(grid, a), n.x);
+  corners[3u * id + 1u] = vec4(toGridSpace(grid, b), n.y);
+  corners[3u * id + 2u] = vec4(toGridSpace(grid, c), n.z);
 }
