@@ -24,7 +24,7 @@ void visitReceivers(vec3 p, vec3 n, bool interpolate) {
       if (n[k] * n[k] < 1e-4) continue;
       uint s = faceIndex(voxel, 2 * k + (n[k] < 0.0 ? 1u : 0u));
       if (s == kNone) continue;
-      Face face = faces[s];
+      Face face = faceAt(s);
       vec3 x = vec3(coord) + decodePosition(face.position);
       vec3 ns = decodeNormal(face.normal);
       // The face lies on the surface's own sheet: normals agree, and p is near its plane.
@@ -47,8 +47,8 @@ void visitReceivers(vec3 p, vec3 n, bool interpolate) {
     for (uint f = 0; f < kFaceCount; ++f) {
       uint s = faceIndex(voxel, f);
       if (s == kNone) continue;
-      vec3 offset = vec3(coord) + decodePosition(faces[s].position) - p;
-      float weight = max(1e-3, dot(decodeNormal(faces[s].normal), n)) / (0.01 + dot(offset, offset) * dot(offset, offset));
+      vec3 offset = vec3(coord) + decodePosition(faceAt(s).position) - p;
+      float weight = max(1e-3, dot(decodeNormal(faceAt(s).normal), n)) / (0.01 + dot(offset, offset) * dot(offset, offset));
       RECEIVER_VISIT(s, weight, 3)
     }
   }

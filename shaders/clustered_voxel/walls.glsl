@@ -14,13 +14,13 @@ bool wallAt(ivec3 coord, uint voxel, uint f, float a, float b, ivec3 ahead) {
   uint s = faceIndex(voxel, f);
   if (s == kNone) return false;
   uint k = f >> 1;
-  if (faces[s].area < RADIVOX_WALL_AREA && ahead[k] == 0) {
+  if (faceAt(s).area < RADIVOX_WALL_AREA && ahead[k] == 0) {
     coord += ahead;
     voxel = voxelIndex(coord);
     s = voxel == kNone ? kNone : faceIndex(voxel, f);
     if (s == kNone) return false;
   }
-  Face face = faces[s];
+  Face face = faceAt(s);
   if (face.area < RADIVOX_WALL_AREA || abs(decodeNormal(face.normal)[k]) < RADIVOX_WALL_COSINE) return false;
   precise float plane = float(coord[k]) + decodePosition(face.position)[k];
   precise float fromPlane = a - plane;

@@ -24,7 +24,6 @@
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #extension GL_KHR_shader_subgroup_vote : require
-#define RADIVOX_TEXELS
 #include "shared/clearance.h"
 #include "shared/traversal.glsl"
 #include "shared/voxel_lookup.glsl"

@@ -1,15 +1,16 @@
 // Voxel and face lookup over bound buffers. Before including this file, define the bindings of the buffers that the shader has;
-// each brings its buffer's name and the functions that need no more than what is defined:
+// each brings the functions that need no more than what is defined:
 //   RADIVOX_BIND_GRID        grid          Grid                 isInside(ivec3)
-//   RADIVOX_BIND_OCCUPANCY   occupancy[]   uvec2 × B            isOccupied(ivec3)               (needs GRID)
-//   RADIVOX_BIND_RANK        brickRank[]   u32 × B              voxelIndex(ivec3)               (needs GRID, OCCUPANCY)
-//   RADIVOX_BIND_VOXELS      voxels[]      u32 × V              voxelCoordinate(voxel)
-//   RADIVOX_BIND_DISTANCE    brickDistances[] u8 × B            brickDistance(brick)
-//   RADIVOX_BIND_FACE_MASK   faceMasks[]   u32 × V              hasFace(voxel, f)
-//   RADIVOX_BIND_FIRST_FACE  firstFaces[]  u32 × (V + 1)        faceIndex(voxel, f)             (needs FACE_MASK)
-//   RADIVOX_BIND_FACES       faces[]       Face × F
-// With RADIVOX_TEXELS defined, OCCUPANCY and RANK are read as texels, which CPU devices load for all lanes at once; then use brickBits() and
-// rankOf(). All are read only. What is not found is kNone. `voxel` is a compact index unless it is an ivec3 coordinate.
+//   RADIVOX_BIND_OCCUPANCY   brickBits(brick)     uvec2 × B     isOccupied(ivec3)               (needs GRID)
+//   RADIVOX_BIND_RANK        rankOf(brick)        u32 × B       voxelIndex(ivec3)               (needs GRID, OCCUPANCY)
+//   RADIVOX_BIND_VOXELS      packedVoxel(voxel)   u32 × V       voxelCoordinate(voxel)
+//   RADIVOX_BIND_DISTANCE    brickDistance(brick) u8 × B
+//   RADIVOX_BIND_FACE_MASK   faceMask(voxel)      u32 × V       hasFace(voxel, f)
+//   RADIVOX_BIND_FIRST_FACE  firstFace(voxel)     u32 × (V + 1) faceIndex(voxel, f)             (needs FACE_MASK)
+//   RADIVOX_BIND_FACES       faceAt(s)            Face × F
+// All are read only, as texels: what lanes look up at scattered places CPU devices fetch for all lanes at once from these, and lane by lane, with a
+// branch each, from storage buffers. What is not used of faceAt() is not fetched. What is not found is kNone. `voxel` is a compact index unless it is
+// an ivec3 coordinate.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_LOOKUP_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_LOOKUP_GLSL
 #include "shared/voxel_codec.h"
@@ -20,13 +21,8 @@ bool isInside(ivec3 voxel) { return all(greaterThanEqual(voxel, ivec3(0))) && al
 #endif
 
 #ifdef RADIVOX_BIND_OCCUPANCY
-#ifdef RADIVOX_TEXELS
 layout(set = 0, binding = RADIVOX_BIND_OCCUPANCY) uniform usamplerBuffer occupancyTexels;
 uvec2 brickBits(uint brick) { return uvec2(texelFetch(occupancyTexels, int(2u * brick)).x, texelFetch(occupancyTexels, int(2u * brick + 1u)).x); }
-#else
-layout(set = 0, binding = RADIVOX_BIND_OCCUPANCY, scalar) readonly buffer RadivoxOccupancy { uvec2 occupancy[]; };
-uvec2 brickBits(uint brick) { return occupancy[brick]; }
-#endif
 bool isOccupied(ivec3 voxel) {
   if (!isInside(voxel)) return false;
   return hasBit(brickBits(brickOf(uvec3(voxel), grid.bricks)), bitOf(uvec3(voxel)));
@@ -34,13 +30,8 @@ bool isOccupied(ivec3 voxel) {
 #endif
 
 #ifdef RADIVOX_BIND_RANK
-#ifdef RADIVOX_TEXELS
 layout(set = 0, binding = RADIVOX_BIND_RANK) uniform usamplerBuffer rankTexels;
 uint rankOf(uint brick) { return texelFetch(rankTexels, int(brick)).x; }
-#else
-layout(set = 0, binding = RADIVOX_BIND_RANK, scalar) readonly buffer RadivoxRank { uint brickRank[]; };
-uint rankOf(uint brick) { return brickRank[brick]; }
-#endif
 uint voxelIndex(ivec3 voxel) {
   if (!isInside(voxel)) return kNone;
   uint brick = brickOf(uvec3(voxel), grid.bricks);
@@ -51,31 +42,44 @@ uint voxelIndex(ivec3 voxel) {
 #endif
 
 #ifdef RADIVOX_BIND_VOXELS
-layout(set = 0, binding = RADIVOX_BIND_VOXELS, scalar) readonly buffer RadivoxVoxels { uint voxels[]; };
-uvec3 voxelCoordinate(uint voxel) { return unpackVoxel(voxels[voxel]); }
+layout(set = 0, binding = RADIVOX_BIND_VOXELS) uniform usamplerBuffer voxelTexels;
+uint packedVoxel(uint voxel) { return texelFetch(voxelTexels, int(voxel)).x; }
+uvec3 voxelCoordinate(uint voxel) { return unpackVoxel(packedVoxel(voxel)); }
 #endif
 
 #ifdef RADIVOX_BIND_DISTANCE
-layout(set = 0, binding = RADIVOX_BIND_DISTANCE, scalar) readonly buffer RadivoxDistance { uint brickDistances[]; };
-uint brickDistance(uint brick) { return (brickDistances[brick >> 2] >> ((brick & 3u) * 8u)) & 0xffu; }
+layout(set = 0, binding = RADIVOX_BIND_DISTANCE) uniform usamplerBuffer distanceTexels;
+uint brickDistance(uint brick) { return (texelFetch(distanceTexels, int(brick >> 2)).x >> ((brick & 3u) * 8u)) & 0xffu; }
 #endif
 
 #ifdef RADIVOX_BIND_FACE_MASK
-layout(set = 0, binding = RADIVOX_BIND_FACE_MASK, scalar) readonly buffer RadivoxFaceMask { uint faceMasks[]; };
-bool hasFace(uint voxel, uint f) { return ((faceMasks[voxel] >> f) & 1u) != 0u; }
+layout(set = 0, binding = RADIVOX_BIND_FACE_MASK) uniform usamplerBuffer faceMaskTexels;
+uint faceMask(uint voxel) { return texelFetch(faceMaskTexels, int(voxel)).x; }
+bool hasFace(uint voxel, uint f) { return ((faceMask(voxel) >> f) & 1u) != 0u; }
 #endif
 
 #ifdef RADIVOX_BIND_FIRST_FACE
-layout(set = 0, binding = RADIVOX_BIND_FIRST_FACE, scalar) readonly buffer RadivoxFirstFace { uint firstFaces[]; };
+layout(set = 0, binding = RADIVOX_BIND_FIRST_FACE) uniform usamplerBuffer firstFaceTexels;
+uint firstFace(uint voxel) { return texelFetch(firstFaceTexels, int(voxel)).x; }
 uint faceIndex(uint voxel, uint f) {
-  uint mask = faceMasks[voxel];
+  uint mask = faceMask(voxel);
   if (((mask >> f) & 1u) == 0u) return kNone;
-  return firstFaces[voxel] + uint(bitCount(mask & ((1u << f) - 1u)));
+  return firstFace(voxel) + uint(bitCount(mask & ((1u << f) - 1u)));
 }
 #endif
 
 #ifdef RADIVOX_BIND_FACES
-layout(set = 0, binding = RADIVOX_BIND_FACES, scalar) readonly buffer RadivoxFaces { Face faces[]; };
+layout(set = 0, binding = RADIVOX_BIND_FACES) uniform usamplerBuffer faceTexels;
+uint faceWord(uint s, uint word) { return texelFetch(faceTexels, int(6u * s + word)).x; }
+Face faceAt(uint s) {
+  Face face;
+  face.key = faceWord(s, 0u);
+  face.area = uintBitsToFloat(faceWord(s, 1u));
+  face.normal = faceWord(s, 2u);
+  face.position = faceWord(s, 3u);
+  face.albedo = uvec2(faceWord(s, 4u), faceWord(s, 5u));
+  return face;
+}
 #endif
 
 #endif

@@ -34,7 +34,7 @@ void main() {
   for (uint steps = grid.size.x + grid.size.y + grid.size.z + 4u; inside && steps > 0u; --steps) {
     ivec3 coordinate = ivec3(cursor.voxel);
     uint brick = brickOf(uvec3(coordinate), grid.bricks);
-    if (any(notEqual(occupancy[brick], uvec2(0u))) && isOccupied(coordinate)) {
+    if (any(notEqual(brickBits(brick), uvec2(0u))) && isOccupied(coordinate)) {
       uint axis = entered.x > 0.5 ? 0u : (entered.y > 0.5 ? 1u : 2u);
       uint voxel = voxelIndex(coordinate);
       uint best = faceIndex(voxel, 2u * axis + (ray.direction[axis] > 0.0 ? 1u : 0u));

@@ -40,8 +40,8 @@ void main() {
   castBegin();
   uint ray = min(radivoxItemIndex(), rayCount - 1u);
   bool idle = radivoxItemIndex() >= rayCount;
-  Face face = faces[faceId];
-  uint packed = voxels[face.key >> 3];
+  Face face = faceAt(faceId);
+  uint packed = packedVoxel(face.key >> 3);
   uvec3 coordinate = unpackVoxel(packed);
   uint seed = faceSeed(packed, face.key & 7u);
   vec3 position = facePosition(face, coordinate);

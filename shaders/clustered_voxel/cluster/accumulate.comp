@@ -15,6 +15,6 @@ layout(set = 0, binding = 2, scalar) readonly buffer SeedLabels { uint seedLabel
 void main() {
   uint s = radivoxItemIndex();
   if (s >= push.faceCount) return;
-  Face face = faces[s];
+  Face face = faceAt(s);
   addMember(seedLabels[s], face, voxelCoordinate(face.key >> 3), decodeNormal(face.normal), 1);
 }

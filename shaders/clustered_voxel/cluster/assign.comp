@@ -93,7 +93,7 @@ void main() {
   uint end = seedStarts[firstSeed + uint(bitCount(cellMasks[cell]))];
   for (uint i = seedStarts[firstSeed] + lane; i < end; i += kClusterGroup) {
     uint s = sorted[i];
-    Face face = faces[s];
+    Face face = faceAt(s);
     uvec3 voxel = voxelCoordinate(face.key >> 3);
     vec3 position = facePosition(face, voxel);
     vec3 normal = decodeNormal(face.normal);

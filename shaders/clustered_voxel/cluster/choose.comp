@@ -17,7 +17,7 @@ layout(set = 0, binding = 11, scalar) writeonly buffer Targets { uint targets[];
 Seed seedOf(uint piece) {
   uint label = seedLabels[piece];
   if (label != kNone) return seeds[label];
-  Face face = faces[piece];
+  Face face = faceAt(piece);
   return Seed(facePosition(face, unpackVoxel(voxels[face.key >> 3])), decodeNormal(face.normal));
 }
 
@@ -54,7 +54,7 @@ void main() {
           if (small[4u * piece + 1u + l] < candidate) lower += 1u;
         if (lower == i) member = candidate;
       }
-      Face face = faces[member];
+      Face face = faceAt(member);
       uvec3 voxel = unpackVoxel(voxels[face.key >> 3]);
       position[i] = facePosition(face, voxel);
       normal[i] = decodeNormal(face.normal);
@@ -68,8 +68,8 @@ void main() {
         ivec3 otherCoordinate = coordinate[i] + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1;
         uint other = voxelIndex(otherCoordinate);
         if (other == kNone) continue;
-        uint begin = firstFaces[other];
-        uint end = begin + uint(bitCount(faceMasks[other]));
+        uint begin = firstFace(other);
+        uint end = begin + uint(bitCount(faceMask(other)));
         for (uint b = begin; b < end; ++b) {
           uint candidate = pieces[b];
           if (candidate == piece || candidate == last || candidate == target) continue;

@@ -15,9 +15,9 @@ layout(set = 0, binding = 7, scalar) readonly buffer SeedLabels { uint seedLabel
 void main() {
   uint v = radivoxItemIndex();
   if (v >= push.voxelCount) return;
-  uint mask = faceMasks[v];
+  uint mask = faceMask(v);
   if (mask == 0u) return;
-  uint begin = firstFaces[v];
+  uint begin = firstFace(v);
   uint count = uint(bitCount(mask));
   uint label[kFaceCount];
   for (uint f = 0; f < kFaceCount; ++f) label[f] = f < count ? seedLabels[begin + f] : kNone;
@@ -34,24 +34,28 @@ void main() {
     ivec3 otherCoordinate = coordinate + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1;
     uint other = voxelIndex(otherCoordinate);
     if (other == kNone) continue;
-    uint otherBegin = firstFaces[other];
-    uint otherEnd = otherBegin + uint(bitCount(faceMasks[other]));
-    // Pairs are numbered 6 · (the other's face) + our face. Lanes look for their next pair each on its own and then look for walls together.
-    uint pair = 0u;
-    uint pairs = kFaceCount * (otherEnd - otherBegin);
-    while (true) {
-      while (pair < pairs) {
-        uint own = label[pair % kFaceCount];
-        if (own != kNone && own == seedLabels[otherBegin + pair / kFaceCount]) break;
-        ++pair;
-      }
-      if (pair >= pairs) break;
-      uint a = begin + pair % kFaceCount;
-      uint b = otherBegin + pair / kFaceCount;
+    uint otherBegin = firstFace(other);
+    uint otherEnd = otherBegin + uint(bitCount(faceMask(other)));
+    // Pairs of one seed, six bits a face of the other's, a bit for each of ours. Lanes take their next pair each on its own and look for walls together.
+    uvec2 pairs = uvec2(0u);
+    for (uint o = otherBegin; o < otherEnd; ++o) {
+      uint seed = seedLabels[o];
+      uint same = 0u;
+      for (uint f = 0; f < kFaceCount; ++f) same |= seed != kNone && label[f] == seed ? 1u << f : 0u;
+      uint at = kFaceCount * (o - otherBegin);
+      pairs |= at < 30u ? uvec2(same << at, 0u) : uvec2(0u, same);
+    }
+    while (pairs != uvec2(0u)) {
+      uint pair = pairs.x != 0u ? uint(findLSB(pairs.x)) : 30u + uint(findLSB(pairs.y));
+      uint f = pair % kFaceCount;
+      uint first = pair - f;
+      uint a = begin + f;
+      uint b = otherBegin + first / kFaceCount;
       bool joins = !areApart(a, coordinate, b, otherCoordinate);
       if (joins) unite(a, b);
       // This voxel's others of the seed are one with `a` already.
-      pair = joins ? (pair / kFaceCount + 1u) * kFaceCount : pair + 1u;
+      uint done = joins ? 0x3fu : 1u << f;
+      pairs &= ~(first < 30u ? uvec2(done << first, 0u) : uvec2(0u, done));
     }
   }
 }

@@ -15,17 +15,17 @@ layout(set = 0, binding = 8, scalar) readonly buffer FaceCells { uint faceCells[
 void main() {
   uint s = radivoxItemIndex();
   if (s >= push.faceCount || seedLabels[s] != kNone) return;
-  uint bin = directionBin(decodeNormal(faces[s].normal));
-  ivec3 coordinate = ivec3(unpackVoxel(voxels[faces[s].key >> 3]));
+  uint bin = directionBin(decodeNormal(faceAt(s).normal));
+  ivec3 coordinate = ivec3(unpackVoxel(voxels[faceAt(s).key >> 3]));
   for (uint step = 0; step < 27u; ++step) {
     ivec3 otherCoordinate = coordinate + ivec3(step % 3u, (step / 3u) % 3u, step / 9u) - 1;
     uint other = voxelIndex(otherCoordinate);
     if (other == kNone) continue;
-    uint begin = firstFaces[other];
-    uint end = min(begin + uint(bitCount(faceMasks[other])), s);  // each pair is seen to by its higher face
+    uint begin = firstFace(other);
+    uint end = min(begin + uint(bitCount(faceMask(other))), s);  // each pair is seen to by its higher face
     for (uint b = begin; b < end; ++b) {
       if (seedLabels[b] != kNone || faceCells[b] != faceCells[s]) continue;
-      if (directionBin(decodeNormal(faces[b].normal)) == bin && !areApart(s, coordinate, b, otherCoordinate)) unite(s, b);
+      if (directionBin(decodeNormal(faceAt(b).normal)) == bin && !areApart(s, coordinate, b, otherCoordinate)) unite(s, b);
     }
   }
 }

@@ -15,5 +15,5 @@ void main() {
   if (s >= push.faceCount) return;
   uint cell = slotCells[faceCells[s]];
   faceCells[s] = cell;
-  atomicOr(cellMasks[cell], 1u << dominantDirection(decodeNormal(faces[s].normal)));
+  atomicOr(cellMasks[cell], 1u << dominantDirection(decodeNormal(faceAt(s).normal)));
 }

@@ -61,7 +61,7 @@ void main() {
   CompensatedSum3 normal = position;
   CompensatedSum3 albedo = position;
   for (uint i = begin; i < end; ++i) {
-    Face face = faces[members[i]];
+    Face face = faceAt(members[i]);
     addTo(area, face.area);
     addTo(position, face.area * facePosition(face, voxelCoordinate(face.key >> 3)));
     addTo(normal, face.area * decodeNormal(face.normal));

@@ -14,7 +14,7 @@ layout(set = 0, binding = 4, scalar) writeonly buffer FaceCells { uint faceCells
 void main() {
   uint s = radivoxItemIndex();
   if (s >= push.faceCount) return;
-  uint key = seedCellKey(voxelCoordinate(faces[s].key >> 3));
+  uint key = seedCellKey(voxelCoordinate(faceAt(s).key >> 3));
   uint slot = firstSlot(key);
   // At most half of the slots are ever taken, so a free one is found.
   for (uint probe = 0; probe < push.hashSize; ++probe) {

@@ -18,7 +18,7 @@ void main() {
   uint s = radivoxItemIndex();
   if (s >= push.faceCount) return;
   uint cell = faceCells[s];
-  uint direction = dominantDirection(decodeNormal(faces[s].normal));
+  uint direction = dominantDirection(decodeNormal(faceAt(s).normal));
   uint seed = firstSeeds[cell] + uint(bitCount(cellMasks[cell] & ((1u << direction) - 1u)));
   seedLabels[s] = seed;
   seedHomes[seed] = cellKeys[cell];  // the same word from every face of the seed

@@ -49,10 +49,10 @@ void main() {
     to[s] = from[s];
     return;
   }
-  uint key = faces[s].key;
+  uint key = faceAt(s).key;
   ivec3 coord = ivec3(unpackVoxel(voxels[key >> 3]));
-  vec3 x = vec3(coord) + decodePosition(faces[s].position);
-  vec3 n = decodeNormal(faces[s].normal);
+  vec3 x = vec3(coord) + decodePosition(faceAt(s).position);
+  vec3 n = decodeNormal(faceAt(s).normal);
   ivec3 ahead = stepAhead(n);
   int r = int(radius);
   float sigma = 0.5 * float(r) + 0.25;
@@ -72,13 +72,13 @@ void main() {
         if (kWeights == 1) {
           if (max(value.x, max(value.y, value.z)) == 0.0) continue;  // the paper drops unlit faces
         } else if (t != s) {
-          vec3 y = vec3(there) + decodePosition(faces[t].position);
-          vec3 m = decodeNormal(faces[t].normal);
+          vec3 y = vec3(there) + decodePosition(faceAt(t).position);
+          vec3 m = decodeNormal(faceAt(t).normal);
           float offPlane = max(abs(dot(y - x, n)), abs(dot(y - x, m)));
-          weight *= max(0.0, dot(n, m) * 4.0 - 3.0) * max(0.0, 1.0 - offPlane * offPlane) * min(1.0, faces[t].area);
+          weight *= max(0.0, dot(n, m) * 4.0 - 3.0) * max(0.0, 1.0 - offPlane * offPlane) * min(1.0, faceAt(t).area);
           if (weight <= 0.0 || blocked(coord, key >> 3, x, there, voxel, y, ahead)) continue;
         } else {
-          weight *= min(1.0, faces[s].area) + 1e-3;
+          weight *= min(1.0, faceAt(s).area) + 1e-3;
         }
         sum += weight * value;
         total += weight;

@@ -62,7 +62,6 @@ layout(push_constant, scalar) uniform Push {
   uvec2 skyInfo;       // of scene.info
   uvec2 emission;      // of B_e of each face
 };
-#define RADIVOX_TEXELS
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_walk.glsl"
 #include "shared/light.glsl"
@@ -143,7 +142,7 @@ void main() {
       vec3 at = position.xyz + (kNearLift * n + hit.time * way.direction) * grid.h;
       vec3 change = directIrradiance(at, hit.normal, hit.triangle) - faceIrradiance[face];
       if (kSky) change += skyIrradiance[face];
-      radiosity = max(radiosity + decodeAlbedo(faces[face].albedo) * change, vec3(0.0));
+      radiosity = max(radiosity + decodeAlbedo(faceAt(face).albedo) * change, vec3(0.0));
     }
     sum.xyz += isFace ? radiosity : vec3(0.0);
     if (kEmitted && isFace) emittedSum += Emission(emission).of[face];

@@ -17,7 +17,7 @@ const uint kFar = 255u;
 
 uint distanceBefore(uint brick) {
   if (axis != 0u) return brickDistance(brick);
-  return occupancy[brick] == uvec2(0u) ? kFar : 0u;
+  return brickBits(brick) == uvec2(0u) ? kFar : 0u;
 }
 
 uint distanceOf(uint brick, uint stride) {

@@ -14,9 +14,9 @@ layout(set = 0, binding = 3, scalar) writeonly buffer Voxels { uint voxels[]; };
 void main() {
   uint brick = radivoxItemIndex();
   if (brick >= grid.brickCount) return;
-  uvec2 word = occupancy[brick];
+  uvec2 word = brickBits(brick);
   if (word == uvec2(0u)) return;
-  uint voxel = brickRank[brick];
+  uint voxel = rankOf(brick);
   uvec3 low = 4u * brickCoordinate(brick, grid.bricks);
   for (uint half_ = 0u; half_ < 2u; ++half_) {
     for (uint bits = word[half_]; bits != 0u; bits &= bits - 1u) {

@@ -54,7 +54,7 @@ bool seesLight(Light light, vec3 p) {
 void main() {
   uint s = radivoxItemIndex();
   if (s >= faceCount) return;
-  Face face = faces[s];
+  Face face = faceAt(s);
   ivec3 coord = ivec3(voxelCoordinate(face.key >> 3));
   vec3 centre = vec3(coord) + 0.5;
   vec3 n = decodeNormal(face.normal);

@@ -37,7 +37,7 @@ void main() {
         best = s;
       }
     if (best != kNone)
-      result = kWhat == 0 ? vec4(float(best) + 1.0, float(voxel), float(faces[best].key & 7u), faces[best].area)
+      result = kWhat == 0 ? vec4(float(best) + 1.0, float(voxel), float(faceAt(best).key & 7u), faceAt(best).area)
                           : vec4(colourOfId(labels[best]), float(labels[best]) + 1.0);
   }
   imageStore(outImage, pixel, result);

@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push {
 void main() {
   uint s = radivoxItemIndex();
   if (s >= faceCount || (shown[s >> 5] & (1u << (s & 31u))) == 0u) return;
-  uint key = faces[s].key;
+  uint key = faceAt(s).key;
   ivec3 coord = ivec3(unpackVoxel(voxels[key >> 3]));
   int r = int(reach);
   for (int z = -r; z <= r; ++z)

@@ -24,7 +24,7 @@ void main() {
     for (uint b = 0u; b < 4u; ++b) {
       uint voxel = voxelIndex(ivec3(4u * w + b, rimmed) - 1);
       bool inGrid = isInside(ivec3(4u * w + b, rimmed) - 1);
-      distance = !inGrid || (voxel != kNone && faceMasks[voxel] != 0u) ? 0u : min(distance + 1u, kMaxClearance);
+      distance = !inGrid || (voxel != kNone && faceMask(voxel) != 0u) ? 0u : min(distance + 1u, kMaxClearance);
       packed |= distance << (8u * b);
     }
     rows[base + w] = packed;

@@ -23,8 +23,8 @@ float dotPrecise(vec3 a, vec3 b) {
 void main() {
   uint voxel = radivoxItemIndex();
   if (voxel >= voxelCount) return;
-  uint first = firstFaces[voxel];
-  uint mask = faceMasks[voxel];
+  uint first = firstFace(voxel);
+  uint mask = faceMask(voxel);
   if (!kCount && mask == 0u) planes[voxel] = uvec2(0u);
   uint left = mask;
   uint count = 0u;
@@ -33,7 +33,7 @@ void main() {
     Face largest;
     for (uint f = 0u; f < kFaceCount; ++f) {
       if (((left >> f) & 1u) == 0u) continue;
-      Face face = faces[first + uint(bitCount(mask & ((1u << f) - 1u)))];
+      Face face = faceAt(first + uint(bitCount(mask & ((1u << f) - 1u))));
       if (founder != kNone && face.area <= largest.area) continue;
       founder = f;
       largest = face;
@@ -43,7 +43,7 @@ void main() {
     uint members = 1u << founder;
     for (uint f = 0u; f < kFaceCount; ++f) {
       if (((left >> f) & 1u) == 0u) continue;
-      Face face = faces[first + uint(bitCount(mask & ((1u << f) - 1u)))];
+      Face face = faceAt(first + uint(bitCount(mask & ((1u << f) - 1u))));
       precise vec3 offset = decodePosition(face.position) - x;
       bool agrees = abs(dotPrecise(decodeNormal(face.normal), n)) > kSamePlaneCosine && abs(dotPrecise(offset, n)) < kSamePlaneDistance;
       members |= agrees ? 1u << f : 0u;

@@ -43,7 +43,7 @@ void main() {
   uint was = oldFaces[s];
   if (was != kNone) {
     castBegin();
-    vec3 middle = vec3(voxelCoordinate(faces[s].key >> 3)) + 0.5;
+    vec3 middle = vec3(voxelCoordinate(faceAt(s).key >> 3)) + 0.5;
     bool started = false;
     Start start;
     for (uint ray = first; ray < min(first + 32u, rayCount); ++ray) {
@@ -54,7 +54,7 @@ void main() {
       if (met) {
         uint face = keptWord(old, keptFace(old, hit & kHitFace));
         if (face == kNone) continue;
-        way = vec3(voxelCoordinate(faces[face].key >> 3)) + 0.5 - middle;
+        way = vec3(voxelCoordinate(faceAt(face).key >> 3)) + 0.5 - middle;
         hit = (hit & ~kHitFace) | face;
       } else {  // how far it went is not kept
         if (!started) start = startOf(s);

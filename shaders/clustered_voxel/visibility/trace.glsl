@@ -126,9 +126,9 @@ struct Start {
 
 Start startOf(uint s) {
   Start start;
-  Face face = faces[s];
+  Face face = faceAt(s);
   start.f = face.key & 7u;
-  uint packed = voxels[face.key >> 3];
+  uint packed = packedVoxel(face.key >> 3);
   start.seed = faceSeed(packed, start.f);
   start.coordinate = unpackVoxel(packed);
   start.normal = decodeNormal(face.normal);

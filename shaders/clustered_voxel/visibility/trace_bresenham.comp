@@ -47,8 +47,8 @@ void main() {
   if (kSomeRays) left = todo[row * rayWords(rayCount) + ray / kRaysPerLane];
   uint first = ray;
   uint s = firstFace + row;
-  Face face = faces[s];
-  uint packed = voxels[face.key >> 3];
+  Face face = faceAt(s);
+  uint packed = packedVoxel(face.key >> 3);
   uvec3 coordinate = unpackVoxel(packed);
   uint seed = faceSeed(packed, face.key & 7u);
   vec3 n = kFrame == 1 ? faceVector(face.key & 7u) : decodeNormal(face.normal);

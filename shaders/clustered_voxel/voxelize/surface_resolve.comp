@@ -84,8 +84,8 @@ uint marginsOf(uint footprint) {
 }
 
 void writeFaces(uint voxel) {
-  uint mask = faceMasks[voxel];
-  uint face = firstFaces[voxel];
+  uint mask = faceMask(voxel);
+  uint face = firstFace(voxel);
   vec3 axisNormal = kHeuristic && mask != 0u ? heuristicNormal(voxel) : vec3(0.0);
   for (uint f = 0u; f < kFaceCount; ++f) {
     if (((mask >> f) & 1u) == 0u) continue;
