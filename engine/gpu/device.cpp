@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "engine/gpu/compile_pool.h"
 #include "engine/gpu/device_builder.h"
 #include "engine/gpu/host_memory.h"
 #include "engine/gpu/pipeline_cache_file.h"
@@ -77,7 +78,12 @@ struct FenceGuard {
 
 }  // namespace
 
+Device::Device() : compilePool_(std::make_unique<CompilePool>()) {}
+
+void Device::waitForPipelines() { compilePool_->finish(); }
+
 Device::~Device() {
+  compilePool_.reset();
   if (device_ != VK_NULL_HANDLE) {
     assert(allocations_.empty() && "a buffer or image outlives its device");
     if (pipelineCache_ != VK_NULL_HANDLE && !pipelineCacheFile_.empty()) {

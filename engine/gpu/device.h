@@ -15,6 +15,8 @@
 
 namespace radivox::gpu {
 
+class CompilePool;
+
 /// Throws Error(OutOfMemory / DeviceFailed) naming the call when `result` is an error.
 void check(VkResult result, const char* call);
 
@@ -95,6 +97,9 @@ class Device {
   VkQueue queue() const { return queue_; }
   uint32_t queueFamily() const { return queueFamily_; }
   VkPipelineCache pipelineCache() const { return pipelineCache_; }
+  CompilePool& compilePool() { return *compilePool_; }
+  /// Until all compute pipelines that were asked for are compiled; errors are thrown where a pipeline is used.
+  void waitForPipelines();
   const Capabilities& capabilities() const { return capabilities_; }
   uint32_t validationMessageCount() const { return validationMessageCount_; }
 
@@ -124,7 +129,7 @@ class Device {
   PFN_vkCmdPushDescriptorSetKHR cmdPushDescriptorSet = nullptr;
 
  private:
-  Device() = default;
+  Device();
   friend struct DeviceBuilder;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkPhysicalDevice physicalDevice_ = VK_NULL_HANDLE;
@@ -132,6 +137,7 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   uint32_t queueFamily_ = 0;
   VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+  std::unique_ptr<CompilePool> compilePool_;
   VkCommandPool commandPool_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;

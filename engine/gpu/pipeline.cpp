@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/gpu/compile_pool.h"
 #include "engine/gpu/shader_reflection.h"
 
 namespace radivox::gpu {
@@ -87,6 +88,23 @@ VkDescriptorType descriptorType(BindingType type) {
   return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
+VkPipeline compileCompute(Device& device, VkPipelineLayout layout, std::span<const uint32_t> words,
+                          const std::vector<SpecializationConstant>& constants, const std::string& name) {
+  const ShaderModule module(device, words);
+  const Specialization specialization(constants);
+  VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+  create.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
+  create.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  create.stage.module = module.handle();
+  create.stage.pName = "main";
+  create.stage.pSpecializationInfo = &specialization.info;
+  create.layout = layout;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device.handle(), device.pipelineCache(), 1, &create, nullptr, &pipeline), "vkCreateComputePipelines");
+  device.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline), name);
+  return pipeline;
+}
+
 }  // namespace
 
 Pipeline::Pipeline(Device& device, const ComputePipelineInfo& info)
@@ -97,23 +115,26 @@ Pipeline::Pipeline(Device& device, const ComputePipelineInfo& info)
     release();
     throw Error(error.code(), "pipeline " + std::string(info.shader) + ": " + error.what());
   }
-  device.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline_), std::string(info.shader));
 }
 
 void Pipeline::makeCompute(Device& device, const ComputePipelineInfo& info) {
   const std::span<const uint32_t> words = info.code.empty() ? findShader(info.shader) : info.code;
   reflect(words);
   makeLayout(device, info.pushConstantBytes, VK_SHADER_STAGE_COMPUTE_BIT);
-  const ShaderModule module(device, words);
-  const Specialization specialization(info.constants);
-  VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  create.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-  create.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  create.stage.module = module.handle();
-  create.stage.pName = "main";
-  create.stage.pSpecializationInfo = &specialization.info;
-  create.layout = layout_;
-  check(vkCreateComputePipelines(device.handle(), device.pipelineCache(), 1, &create, nullptr, &pipeline_), "vkCreateComputePipelines");
+  // The task outlives `info`; this pipeline's layout outlives the task.
+  compiled_ = device.compilePool().run([&device, layout = layout_, words, own = std::vector<uint32_t>(info.code.begin(), info.code.end()),
+                                        constants = info.constants, name = std::string(info.shader)] {
+    try {
+      return compileCompute(device, layout, own.empty() ? words : std::span<const uint32_t>(own), constants, name);
+    } catch (const Error& error) {
+      throw Error(error.code(), "pipeline " + name + ": " + error.what());
+    }
+  });
+}
+
+VkPipeline Pipeline::handle() const {
+  if (compiled_.valid()) pipeline_ = compiled_.get();
+  return pipeline_;
 }
 
 Pipeline::Pipeline(Device& device, const RasterPipelineInfo& info)
@@ -255,6 +276,7 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
   if (this == &other) return *this;
   release();
   device_ = std::exchange(other.device_, nullptr);
+  compiled_ = std::move(other.compiled_);
   pipeline_ = std::exchange(other.pipeline_, VK_NULL_HANDLE);
   layout_ = std::exchange(other.layout_, VK_NULL_HANDLE);
   setLayout_ = std::exchange(other.setLayout_, VK_NULL_HANDLE);
@@ -270,6 +292,10 @@ Pipeline::~Pipeline() { release(); }
 
 void Pipeline::release() noexcept {
   if (device_ == nullptr) return;
+  try {
+    handle();
+  } catch (const std::exception&) {  // nothing was made
+  }
   vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
   vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);
   vkDestroyDescriptorSetLayout(device_->handle(), setLayout_, nullptr);

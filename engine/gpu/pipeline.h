@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -73,7 +74,8 @@ class Pipeline {
   Pipeline& operator=(Pipeline&& other) noexcept;
   ~Pipeline();
 
-  VkPipeline handle() const { return pipeline_; }
+  /// Compute pipelines are compiled by other threads: waits for it, and throws what went wrong.
+  VkPipeline handle() const;
   VkPipelineLayout layout() const { return layout_; }
   VkDescriptorSetLayout setLayout() const { return setLayout_; }
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
@@ -81,7 +83,7 @@ class Pipeline {
   const std::vector<ImageKind>& imageKinds() const { return imageKinds_; }  ///< one per binding; buffers have the default
   uint32_t pushConstantBytes() const { return pushConstantBytes_; }
   VkShaderStageFlags stages() const { return stages_; }
-  explicit operator bool() const { return pipeline_ != VK_NULL_HANDLE; }
+  explicit operator bool() const { return pipeline_ != VK_NULL_HANDLE || compiled_.valid(); }
 
  private:
   void makeCompute(Device& device, const ComputePipelineInfo& info);
@@ -91,7 +93,8 @@ class Pipeline {
   void makeLayout(Device& device, uint32_t pushBytes, VkShaderStageFlags stages);
   void release() noexcept;
   Device* device_ = nullptr;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  mutable std::future<VkPipeline> compiled_;  ///< until it is asked for
+  mutable VkPipeline pipeline_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
   VkPipelineBindPoint bindPoint_ = VK_PIPELINE_BIND_POINT_COMPUTE;

@@ -56,6 +56,7 @@ Executor::Impl::Impl(gpu::Device& device_, Graph& graph_, Plan plan_, const scen
     StepPrepareContext context(*this, plan.steps[i]);
     steps[i].node->prepare(context);
   }
+  device.waitForPipelines();  // so that no node's time holds another's compilation
   descriptors = std::make_unique<gpu::DescriptorPool>(device);
   timestamps = gpu::Timestamps(device, 2 * static_cast<uint32_t>(steps.size()));
   countReadback = gpu::Buffer(device, "graph.counts", uint64_t{countWords} * 4, gpu::MemoryKind::ReadBack);

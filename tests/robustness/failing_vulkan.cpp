@@ -73,6 +73,8 @@ RADIVOX_FAILING(vkAllocateMemory, (VkDevice d, const VkMemoryAllocateInfo* i, co
 RADIVOX_DESTROY(vkFreeMemory, VkDeviceMemory)
 RADIVOX_CREATE(vkCreateBuffer, VkBufferCreateInfo, VkBuffer)
 RADIVOX_DESTROY(vkDestroyBuffer, VkBuffer)
+RADIVOX_CREATE(vkCreateBufferView, VkBufferViewCreateInfo, VkBufferView)
+RADIVOX_DESTROY(vkDestroyBufferView, VkBufferView)
 RADIVOX_CREATE(vkCreateImage, VkImageCreateInfo, VkImage)
 RADIVOX_DESTROY(vkDestroyImage, VkImage)
 RADIVOX_CREATE(vkCreateImageView, VkImageViewCreateInfo, VkImageView)

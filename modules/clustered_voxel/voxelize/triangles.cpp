@@ -83,9 +83,9 @@ void Triangles::prepare(graph::PrepareContext& context) {
                                                                 .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                                                 .pushConstantBytes = 4});
   if (context.has("corners"))
-    corners_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/corners.comp",
-                                                              .bindings = {kB, kB, kB, kB},
-                                                              .pushConstantBytes = 4});
+    corners_ = gpu::Pipeline(
+        device,
+        gpu::ComputePipelineInfo{.shader = "clustered_voxel/voxelize/corners.comp", .bindings = {kB, kB, kB, kB}, .pushConstantBytes = 4});
   scan_ = std::make_unique<gpu::Scan>(device);
 }
 
