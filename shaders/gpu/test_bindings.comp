@@ -13,6 +13,8 @@ layout(set = 0, binding = 6) uniform usampler2DArray sampledLayers;
 layout(set = 0, binding = 7) uniform sampler2D depth;
 layout(set = 0, binding = 8, r32i) uniform iimage2D signedImage;
 layout(set = 0, binding = 9) uniform isampler2D sampledSigned;
+layout(set = 0, binding = 10) uniform usamplerBuffer texelWords;
+layout(set = 0, binding = 11) uniform samplerBuffer texelVectors;
 layout(push_constant, scalar) uniform Push {
   uint present;
   uint width;
@@ -37,5 +39,7 @@ void main() {
   if ((present & 128u) != 0u) sum += uint(textureLod(depth, vec2(p) / size + 5.0, 0.0).x * 1024.0);
   if ((present & 256u) != 0u) sum += uint(imageLoad(signedImage, p).x);
   if ((present & 512u) != 0u) sum += uint(textureLod(sampledSigned, (vec2(p) + 0.5) / size, 0.0).x);
+  if ((present & 1024u) != 0u) sum += texelFetch(texelWords, 64 + p.x).x;
+  if ((present & 2048u) != 0u) sum += uint(texelFetch(texelVectors, p.y).w);
   result[uint(p.y) * width + uint(p.x)] = sum;
 }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "engine/gpu/scan.h"
 #include "engine/gpu/timestamps.h"
@@ -76,7 +77,9 @@ TEST_P(CommandsTest, BindsEveryKindAndNulls) {
                     .shader = "gpu/test_bindings.comp",
                     .bindings = {BindingType::StorageBuffer, BindingType::StorageBuffer, BindingType::UniformBuffer,
                                  BindingType::StorageImage, BindingType::StorageImage, BindingType::SampledImage, BindingType::SampledImage,
-                                 BindingType::SampledImage, BindingType::StorageImage, BindingType::SampledImage},
+                                 BindingType::SampledImage, BindingType::StorageImage, BindingType::SampledImage,
+                                 // Texel buffers, since the shader says so.
+                                 BindingType::StorageBuffer, BindingType::StorageBuffer},
                     .pushConstantBytes = sizeof(BindingsPush)});
   gpu::Buffer out(device(), "out", kWidth * kHeight * 4);
   gpu::Buffer words(device(), "words", 256 + kWidth * 4);
@@ -87,6 +90,12 @@ TEST_P(CommandsTest, BindsEveryKindAndNulls) {
   std::vector<uint32_t> constantData(128, 0);
   constantData[65] = 1000;  // .y at offset 256
   gpu::upload(device(), constants, constantData);
+  EXPECT_EQ(pipeline.bindings()[10], BindingType::TexelBuffer);
+  EXPECT_EQ(pipeline.bindings()[11], BindingType::TexelBuffer);
+  gpu::Buffer vectors(device(), "vectors", kHeight * 16 + 4);  // the last word is no whole texel
+  std::vector<float> vectorData(vectors.bytes() / 4, -1.f);
+  for (uint32_t y = 0; y < kHeight; ++y) vectorData[4 * y + 3] = static_cast<float>(50000000 + 4 * y);
+  gpu::upload(device(), vectors, vectorData);
   gpu::Image color(device(), "color", {.width = kWidth, .height = kHeight});
   gpu::Image layers(device(), "layers", {.width = kWidth, .height = kHeight, .layers = 2, .format = VK_FORMAT_R32_UINT});
   gpu::Image depth(device(), "depth", {.width = kWidth, .height = kHeight, .format = VK_FORMAT_D32_SFLOAT});
@@ -96,9 +105,9 @@ TEST_P(CommandsTest, BindsEveryKindAndNulls) {
   const gpu::BoundResource shownConstants(constants, 256, 256);
   const gpu::Buffer noBuffer;
   const gpu::Image noImage;
-  // What each bit of `present` adds to every result, apart from bit 1, which adds 3x.
+  // What each bit of `present` adds to every result, apart from bits 1 and 10, which add 3x, and 11, which adds 50000000 + 4y.
   const uint32_t adds[10] = {0, 0, 1000, 20000, 300000, 20000, 300000, 512, 4000000, 4000000};
-  for (uint32_t present : {0x3feu, 0x0u, 0x2u, 0x4u, 0x8u, 0x10u, 0x20u, 0x40u, 0x80u, 0x100u, 0x200u}) {
+  for (uint32_t present : {0xffeu, 0x0u, 0x2u, 0x4u, 0x8u, 0x10u, 0x20u, 0x40u, 0x80u, 0x100u, 0x200u, 0x400u, 0x800u}) {
     auto has = [&](uint32_t bit) { return (present >> bit & 1u) != 0; };
     run([&](gpu::Commands& commands) {
       commands.transition(color, VK_IMAGE_LAYOUT_GENERAL);
@@ -127,7 +136,9 @@ TEST_P(CommandsTest, BindsEveryKindAndNulls) {
                                               has(6) ? layers : noImage,
                                               has(7) ? depth : noImage,
                                               has(8) ? integers : noImage,
-                                              has(9) ? integers : noImage};
+                                              has(9) ? integers : noImage,
+                                              has(10) ? words : noBuffer,
+                                              has(11) ? vectors : noBuffer};
       commands.bind(pipeline, resources);
       commands.push(BindingsPush{present, kWidth, kHeight});
       commands.dispatch(2, 2);
@@ -136,7 +147,7 @@ TEST_P(CommandsTest, BindsEveryKindAndNulls) {
     const auto result = gpu::downloadAs<uint32_t>(device(), out, kWidth * kHeight);
     for (uint32_t y = 0; y < kHeight; ++y) {
       for (uint32_t x = 0; x < kWidth; ++x) {
-        uint32_t expected = has(1) ? x * 3 : 0;
+        uint32_t expected = (has(1) ? x * 3 : 0) + (has(10) ? x * 3 : 0) + (has(11) ? 50000000 + 4 * y : 0);
         for (uint32_t bit = 2; bit < 10; ++bit) expected += has(bit) ? adds[bit] : 0;
         ASSERT_EQ(result[y * kWidth + x], expected) << "present " << present << " at " << x << ", " << y;
       }
@@ -252,6 +263,34 @@ TEST_F(PipelineTest, ErrorsNameTheShader) {
                 }),
                 ErrorCode::Unsupported, "uniform buffers");
   }
+}
+
+TEST_F(PipelineTest, TexelsOfBuffersEndAtTheDevicesLimit) {
+  const gpu::Buffer buffer(device(), "a buffer", 100);
+  EXPECT_EQ(buffer.texels(gpu::TexelType::Uint), buffer.texels(gpu::TexelType::Uint)) << "one view";
+  EXPECT_NE(buffer.texels(gpu::TexelType::Uint), buffer.texels(gpu::TexelType::Float));
+  const uint64_t most = device().capabilities().maxTexelBufferElements;
+  ASSERT_GT(most, 0u);
+  if (4 * (most + 1) <= uint64_t{1} << 30) {
+    const gpu::Buffer large(device(), "a large buffer", 4 * (most + 1));
+    expectError(catchError([&] { large.texels(gpu::TexelType::Uint); }), ErrorCode::OutOfMemory, "buffer a large buffer");
+    EXPECT_NE(large.texels(gpu::TexelType::Float), VkBufferView{VK_NULL_HANDLE});
+  }
+  const gpu::Buffer hosts("a host's", buffer.handle(), buffer.bytes(), 0);
+  expectError(catchError([&] { hosts.texels(gpu::TexelType::Uint); }), ErrorCode::Unsupported, "a host's");
+}
+
+TEST_F(PipelineTest, ManyAreCompiledAtOnceAndWaitedFor) {
+  std::vector<gpu::Pipeline> pipelines;
+  for (uint32_t i = 0; i < 24; ++i) pipelines.push_back(makeItemsPipeline(device(), i % 2 == 1));
+  EXPECT_TRUE(pipelines.back()) << "asked for is as good as there";
+  pipelines.erase(pipelines.begin(), pipelines.begin() + 8);  // some before they may be done
+  device().waitForPipelines();
+  const gpu::Pipeline moved = std::move(pipelines.front());
+  EXPECT_NE(moved.handle(), VkPipeline{VK_NULL_HANDLE});
+  std::set<VkPipeline> handles;
+  for (size_t i = 1; i < pipelines.size(); ++i) handles.insert(pipelines[i].handle());
+  EXPECT_EQ(handles.size(), pipelines.size() - 1);
 }
 
 TEST_F(PipelineTest, TakesCodeFromElsewhere) {

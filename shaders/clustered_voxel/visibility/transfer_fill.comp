@@ -28,7 +28,6 @@ MatrixEntry entryAt(uint index) {
 // Columns whose sums are in shared memory at a time: nearly always the whole row.
 const uint kBatch = 1024u;
 shared uint sumLow[kBatch], sumHigh[kBatch];
-shared uint columnsBefore[kWords];
 shared uint laneSums[kLanes];
 shared uint laneLow[kLanes], laneHigh[kLanes];
 shared uint greatestWeight;
@@ -69,7 +68,7 @@ float greatestOf(Cluster cluster, bool byArea) {
   barrier();
   uint greatest = 0u;
   for (uint i = lane; i < cluster.faceCount; i += kLanes)
-    greatest = max(greatest, floatBitsToUint(weightOf(members[cluster.firstMember + i], byArea)));
+    greatest = max(greatest, floatBitsToUint(weightOf(memberAt(cluster.firstMember + i), byArea)));
   if (greatest > 0u) atomicMax(greatestWeight, greatest);  // weights are positive: their bits are ordered as they are
   barrier();
   return uintBitsToFloat(greatestWeight);
@@ -107,8 +106,8 @@ void fillRow(uint c) {
     for (uint w = kOwnSums * lane; w < kOwnSums * (lane + 1u); ++w) {
       for (uint left = wordBits[w]; left != 0u; left &= left - 1u) {
         uint word = 32u * w + uint(findLSB(left));
-        columnsBefore[word] = before;
-        before += uint(bitCount(columnBits[word]));
+        columnBits[word].y = before;
+        before += uint(bitCount(columnBits[word].x));
       }
     }
 
@@ -119,7 +118,7 @@ void fillRow(uint c) {
       for (uint i = lane; i < count; i += kLanes) sumLow[i] = sumHigh[i] = 0u;
       barrier();
       for (uint i = lane; i < cluster.faceCount; i += kLanes) {
-        uint s = members[cluster.firstMember + i];
+        uint s = memberAt(cluster.firstMember + i);
         uint unit = weightUnits(weightOf(s, byArea), greatest);
         VisibilityRow seen = rowOf(s);
         while (hasEntry(seen)) {
@@ -132,8 +131,8 @@ void fillRow(uint c) {
           }
           column -= window;
           if (column < kWindow && column + window < push.clusterCount) {
-            uint word = column >> 5;
-            uint rank = columnsBefore[word] + uint(bitCount(columnBits[word] & ((1u << (column & 31u)) - 1u))) - firstRank;
+            uvec2 word = columnBits[column >> 5];
+            uint rank = word.y + uint(bitCount(word.x & ((1u << (column & 31u)) - 1u))) - firstRank;
             if (rank < kBatch) radivoxFixedAtomicAdd(sumLow[rank], sumHigh[rank], share);
           }
         }
@@ -172,8 +171,8 @@ void fillRow(uint c) {
       for (uint w = kOwnSums * lane; w < kOwnSums * (lane + 1u); ++w) {
         for (uint left = wordBits[w]; left != 0u; left &= left - 1u) {
           uint word = 32u * w + uint(findLSB(left));
-          uint rank = columnsBefore[word] - firstRank;
-          for (uint bits = columnBits[word]; bits != 0u; bits &= bits - 1u) {
+          uint rank = columnBits[word].y - firstRank;
+          for (uint bits = columnBits[word].x; bits != 0u; bits &= bits - 1u) {
             uint column = window + word * 32u + uint(findLSB(bits));
             if (rank < count) entryAt(row + firstRank + rank).value = packTransferEntry(column, sumLow[rank], push.weightBits);
             rank += 1u;
