@@ -23,7 +23,6 @@
 // by 1.5 h: 0.018 to 0.053, not lifted: 0.23), mean error of E 36 % (50 %, 270 %); leaks of a closed room below 2e-4 of the rays.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
-#extension GL_KHR_shader_subgroup_vote : require
 #include "shared/clearance.h"
 #include "shared/traversal.glsl"
 #include "shared/voxel_lookup.glsl"
@@ -58,6 +57,9 @@ void castBegin() {
   castBricks = grid.bricks;
 }
 
+// Every pass of a march moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
+uint mostPasses() { return castSize.x + castSize.y + castSize.z + 5u; }
+
 #ifdef RADIVOX_BIND_CLEARANCE
 layout(set = 0, binding = RADIVOX_BIND_CLEARANCE) uniform usamplerBuffer clearanceTexels;
 
@@ -79,8 +81,7 @@ bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live)
   int up = ray.forward.z > 0.5 ? slice : -slice;
   int ground = ray.forward.z > 0.5 ? slice : 0;
   bool moved = false;
-  // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
-  for (uint passes = live ? castSize.x + castSize.y + castSize.z + 5u : 0u; passes > 0u; --passes) {
+  for (uint passes = live ? mostPasses() : 0u; passes > 0u; --passes) {
     uint i = uint(int(voxel.x * across.x + voxel.y * across.y + base) + int(voxel.z) * up + ground);
     float clearance = float((texelFetch(clearanceTexels, int(i >> 2)).x >> (8u * (i & 3u))) & 0xffu);
     if (clearance == 0.0) break;
@@ -130,23 +131,16 @@ bool castEmptyBox(TraversalCursor cursor, out vec3 low, out vec3 high) {
 }
 
 // Moves on, if `live`, until the cursor is in a voxel that may have faces, or outside. Returns whether it moved.
-//
-// Lanes that have arrived go along without moving until all have: every lane loads in every pass, which CPU devices, where a
-// masked load is a branch a lane, do in half the time.
 bool castMarch(TraversalRay ray, inout TraversalCursor cursor, bool live) {
 #ifdef RADIVOX_BIND_CLEARANCE
   if (RADIVOX_SKIP == kSkipClearance) return marchByClearance(ray, cursor, live);
 #endif
-  vec3 low, high;
-  bool moving = castEmptyBox(cursor, low, high) && live;
-  bool moved = moving;
-  // Every pass moves on by a voxel at least; the bound only guards against coordinates that are not numbers.
-  for (uint passes = castSize.x + castSize.y + castSize.z + 4u; subgroupAny(moving) && passes > 0u; --passes) {
-    TraversalCursor next = cursor;
-    traversalLeave(ray, low, high, next);
-    cursor.voxel = mix(cursor.voxel, next.voxel, bvec3(moving));
-    cursor.time = moving ? next.time : cursor.time;
-    moving = castEmptyBox(cursor, low, high) && moving;
+  bool moved = false;
+  for (uint passes = live ? mostPasses() : 0u; passes > 0u; --passes) {
+    vec3 low, high;
+    if (!castEmptyBox(cursor, low, high)) break;
+    traversalLeave(ray, low, high, cursor);
+    moved = true;
   }
   return moved;
 }
@@ -192,16 +186,16 @@ struct PlaneHit {
   vec3 normal;  // of the plane, on the side that the ray sees; |x| + |y| + |z| = 1
 };
 
-// The first plane of the cursor's voxel that the ray meets before it leaves the voxel; none where `live` is false or the cursor is outside. Planes in
-// `excluded` do not count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel before had no faces.
-PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded, inout uint inFront) {
+// The first plane of the cursor's voxel that the ray meets before it leaves the voxel; none where the cursor is outside. Planes in `excluded` do not
+// count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel before had no faces.
+PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uint inFront) {
   uint wasInFront = inFront;
   inFront = 0u;
   uvec3 coordinate = uvec3(clamp(cursor.voxel, vec3(0.0), vec3(castSize - 1u)));
   uint brick = brickOf(coordinate, castBricks);
   uint bit = bitOf(coordinate);
   uvec2 word = brickBits(brick);
-  live = live && !isOutside(cursor.voxel) && hasBit(word, bit);
+  bool occupied = !isOutside(cursor.voxel) && hasBit(word, bit);
   uint voxel = min(rankOf(brick) + countBitsBelow(word, bit), RADIVOX_VOXEL_COUNT - 1u);
   uvec2 plane = planeAt(voxel);
   uint mask = plane.x >> 26;
@@ -216,7 +210,7 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, bool live, uint exc
   float bestWhole = 1.0;
   vec3 bestNormal = vec3(0.0);
   uint bestFaces = 0u;
-  bool more = live && mask != 0u;
+  bool more = occupied && mask != 0u;
   for (uint i = 0u; more; ++i) {
     vec3 n = planeNormal(plane.x);
     bool counts = ((excluded >> i) & 1u) == 0u;
@@ -280,8 +274,8 @@ uint faceOfPlane(TraversalRay ray, PlaneHit hit, uint random) {
   return hit.faces == 0u ? kHitNothing : (total > 0.0 ? face : kHitBack);
 }
 
-uint castFace(TraversalRay ray, TraversalCursor cursor, bool live, uint excluded, inout uint inFront, uint random) {
-  return faceOfPlane(ray, castPlane(ray, cursor, live, excluded, inFront), random);
+uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uint inFront, uint random) {
+  return faceOfPlane(ray, castPlane(ray, cursor, excluded, inFront), random);
 }
 
 #endif

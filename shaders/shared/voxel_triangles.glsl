@@ -4,7 +4,6 @@
 // shared/texture.glsl.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
-#extension GL_KHR_shader_subgroup_vote : require
 #include "shared/listed_triangle.h"
 #include "shared/texture.glsl"
 #include "shared/traversal.glsl"

@@ -33,7 +33,7 @@ struct WalkHit {
 // triangles), its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from, `lift` (voxels) off it.
 //
 // CPU devices execute both sides of every branch, for all lanes: what a ray needs once is not in the loops.
-WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random, bool live) {
+WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random) {
   WalkHit result = WalkHit(kHitNothing, 0.0, kNone, vec3(0.0));
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   bool atStart = true;
@@ -43,7 +43,7 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   uint voxel = 0u, listed = 0u;
   vec2 time = vec2(0.0, 1.0);
   vec3 normal = vec3(0.0);
-  while (live && nearDistance > 0.0) {
+  while (nearDistance > 0.0) {
     if (castMarch(way, cursor, true)) atStart = hasLast = false;
     voxel = isOutside(cursor.voxel) || cursor.time >= nearDistance ? kNone : voxelIndex(ivec3(cursor.voxel));
     if (voxel == kNone) break;
@@ -59,18 +59,18 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   // A surface that bends passes between the planes of two voxels. Where the first of them was searched for triangles and none was met, the ray is in
   // front of whatever its planes say it has crossed.
   uint inFront = 0u;
-  if (live && !met && hasLast) {
-    PlaneHit crossed = castPlane(way, last, true, 0u, inFront);
+  if (!met && hasLast) {
+    PlaneHit crossed = castPlane(way, last, 0u, inFront);
     if (crossed.faces != 0u) inFront = 0x3fu;
   }
   PlaneHit plane = PlaneHit(0u, 0u, 0u, vec3(0.0));
-  while (live && !met) {
+  while (!met) {
     if (castMarch(way, cursor, true)) {
       inFront = 0u;
       atStart = false;
     }
     if (isOutside(cursor.voxel)) break;
-    plane = castPlane(way, cursor, true, atStart ? excluded : 0u, inFront);
+    plane = castPlane(way, cursor, atStart ? excluded : 0u, inFront);
     if (plane.faces != 0u) break;
     traversalStep(way, cursor);
     atStart = false;

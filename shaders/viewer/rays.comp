@@ -38,8 +38,8 @@ layout(push_constant, scalar) uniform Push {
 
 void main() {
   castBegin();
-  uint ray = min(radivoxItemIndex(), rayCount - 1u);
-  bool idle = radivoxItemIndex() >= rayCount;
+  uint ray = radivoxItemIndex();
+  if (ray >= rayCount) return;
   Face face = faceAt(faceId);
   uint packed = packedVoxel(face.key >> 3);
   uvec3 coordinate = unpackVoxel(packed);
@@ -64,20 +64,14 @@ void main() {
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   uint inFront = 0u;
   bool fresh = true;
-  bool busy = !idle;
-  uint hit = kHitNothing;
-  while (subgroupAny(busy)) {
-    bool stay = fresh && (crowded || kFrame == 1);
-    TraversalCursor stepped = cursor;
-    traversalStep(way, stepped);
-    if (busy && !stay) cursor = stepped;
+  uint hit;
+  do {
+    if (!fresh || !(crowded || kFrame == 1)) traversalStep(way, cursor);
     bool atStart = fresh && crowded;
-    if (castMarch(way, cursor, busy && !atStart)) inFront = 0u;
-    uint found = castFace(way, cursor, busy, atStart ? excluded : 0u, inFront, rayRandom(seed, ray));
+    if (castMarch(way, cursor, !atStart)) inFront = 0u;
+    hit = castFace(way, cursor, atStart ? excluded : 0u, inFront, rayRandom(seed, ray));
     fresh = false;
-    if (busy) hit = found;
-    busy = busy && !isOutside(cursor.voxel) && found == kHitNothing;
-  }
+  } while (!isOutside(cursor.voxel) && hit == kHitNothing);
   uint cluster = hit < kHitBack ? labels[hit] : kNone;
-  if (!idle) ends[ray] = RayEnd(way.direction, cursor.time, hit, cluster);
+  ends[ray] = RayEnd(way.direction, cursor.time, hit, cluster);
 }

@@ -1,5 +1,6 @@
 #include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "modules/clustered_voxel/sky/sky.h"
@@ -14,7 +15,9 @@ using graph::Shape;
 
 namespace {
 constexpr uint32_t kBlock = 4;  // pixels a side of an interleaving block; the shaders know it too
-}
+// Where voxels hold many triangles a ray takes a thousand rounds of loops, and llvmpipe ends a lane's after 65535.
+constexpr uint32_t kRaysPerDispatch = 48;
+}  // namespace
 
 std::vector<glm::vec2> sobolPoints(uint32_t count) {
   std::vector<glm::vec2> out;
@@ -115,7 +118,7 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
                                                           .bindings = bindings,
-                                                          .pushConstantBytes = 48,
+                                                          .pushConstantBytes = 56,
                                                           .constants = {{0, skip},
                                                                         {1, hasTriangles_ ? 1u : 0u},
                                                                         {2, isMasked_ ? 1u : 0u},
@@ -138,13 +141,15 @@ void GatherPixels::record(graph::RecordContext& context) {
   const gpu::Image& normal = context.image("normal");
   const gpu::Image& raw = context.image("raw");
   struct {
-    uint32_t width, height, rays, voxelCount;
+    uint32_t width, height, rays, firstRay, endRay, voxelCount;
     float near;
     uint32_t lightCount;
     VkDeviceAddress sky, skyInfo, emission;
   } push{raw.info().width,
          raw.info().height,
          rays_,
+         0,
+         0,
          static_cast<uint32_t>(context.count("voxels")),
          near_,
          hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u,
@@ -189,10 +194,14 @@ void GatherPixels::record(graph::RecordContext& context) {
                  optional("sky_irradiance", context.has("sky_irradiance")),
                  hasEmitted_ ? context.image("raw_emitted") : absent_,
                  hasSky_ ? context.image("raw_sky") : absent_});
-  commands.push(push);
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);
-  commands.dispatchItems(blocks * kBlock * kBlock, 64);
+  for (push.firstRay = 0; push.firstRay < rays_; push.firstRay = push.endRay) {
+    if (push.firstRay > 0) commands.barrier();
+    push.endRay = std::min(rays_, push.firstRay + kRaysPerDispatch);
+    commands.push(push);
+    commands.dispatchItems(blocks * kBlock * kBlock, 64);
+  }
 
   filter(context, "raw", "between", "irradiance");
   if (hasSky_) filter(context, "raw_sky", "between_sky", "sky");

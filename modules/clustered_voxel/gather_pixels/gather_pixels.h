@@ -34,7 +34,7 @@ class GatherPixels : public graph::Node {
   void record(graph::RecordContext& context) override;
 
  private:
-  uint32_t rays_ = 32;
+  uint32_t rays_ = 48;
   uint32_t smooth_ = 1;
   float near_ = 2.f;
   bool shadow_ = true;

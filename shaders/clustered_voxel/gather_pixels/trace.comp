@@ -4,7 +4,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-// One lane a pixel: the mean radiosity along its share of the block's directions. See modules/clustered_voxel/gather_pixels/gather_pixels.h.
+// One lane a pixel: the mean radiosity along its share of the block's directions, so many rays a dispatch, which goes on from the sums of the one
+// before. See modules/clustered_voxel/gather_pixels/gather_pixels.h.
 #include "shared/dispatch.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kSkip = 2;
@@ -24,7 +25,7 @@ layout(set = 0, binding = 6, rgba32f) readonly uniform image2D positionImage;
 layout(set = 0, binding = 7, rgba32f) readonly uniform image2D normalImage;
 layout(set = 0, binding = 9, scalar) readonly buffer RadiosityBuffer { vec3 faceRadiosity[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer DirectionBuffer { vec2 directions[]; };  // of the unit square
-layout(set = 0, binding = 11, rgba32f) writeonly uniform image2D rawImage;
+layout(set = 0, binding = 11, rgba32f) uniform image2D rawImage;
 #include "shared/scene.h"
 layout(set = 0, binding = 15, r32ui) readonly uniform uimage2D triangleImage;
 layout(set = 0, binding = 16) uniform usamplerBuffer triangleFirstTexels;
@@ -47,14 +48,16 @@ layout(constant_id = 6) const bool kSkyImage = false;
 // By address: there are 32 bindings at most.
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SkyValues { vec3 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer InfoAt { SceneInfo info; };
-layout(set = 0, binding = 31, rgba32f) writeonly uniform image2D rawSkyImage;
+layout(set = 0, binding = 31, rgba32f) uniform image2D rawSkyImage;
 layout(constant_id = 7) const bool kEmitted = false;  // emitters light through these rays, and no other way
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Emission { vec3 of[]; };
-layout(set = 0, binding = 30, rgba32f) writeonly uniform image2D rawEmittedImage;
+layout(set = 0, binding = 30, rgba32f) uniform image2D rawEmittedImage;
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
   uint rays;
+  uint firstRay;       // of this dispatch
+  uint endRay;
   uint voxelCount;
   float nearDistance;  // voxels
   uint lightCount;
@@ -108,7 +111,7 @@ void main() {
   // Lanes without a pixel, or with the sky in it, have no rays.
   bool isPixel = i / blockCount < 16u && pixel.x < width && pixel.y < height;
   vec4 position = isPixel ? imageLoad(positionImage, ivec2(pixel)) : vec4(0.0);
-  uint end = position.w != 0.0 ? rays : 0u;
+  uint end = position.w != 0.0 ? endRay : 0u;
   vec3 p = toGridSpace(grid, position.xyz);
   vec3 n = end > 0u ? imageLoad(normalImage, ivec2(pixel)).xyz : vec3(0.0, 0.0, 1.0);
   // Triangles need no lift but against rounding; mean planes do.
@@ -126,13 +129,15 @@ void main() {
   uint hashed = hashBits(block / kShiftRun + 0x68bc21ebu);
   vec2 shift = vec2(uvec2(hashed, hashBits(hashed)) >> 8) * (1.0 / 16777216.0);
 
-  vec4 sum = vec4(0.0);
-  vec3 skySum = vec3(0.0), emittedSum = vec3(0.0);
-  for (uint ray = 0u; ray < end; ++ray) {
+  bool goesOn = firstRay > 0u && end > 0u;
+  vec4 sum = goesOn ? imageLoad(rawImage, ivec2(pixel)) : vec4(0.0);
+  vec3 skySum = kSkyImage && goesOn ? imageLoad(rawSkyImage, ivec2(pixel)).xyz : vec3(0.0);
+  vec3 emittedSum = kEmitted && goesOn ? imageLoad(rawEmittedImage, ivec2(pixel)).xyz : vec3(0.0);
+  for (uint ray = firstRay; ray < end; ++ray) {
     vec2 square = fract(directions[place * rays + ray] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
     TraversalRay way = makeTraversalRay(origin, (t * cos(turn) + b * sin(turn)) * radius + n * sqrt(1.0 - square.x));
-    WalkHit hit = walkRay(way, start, excluded, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray), true);
+    WalkHit hit = walkRay(way, start, excluded, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray));
     bool isFace = hit.face < kHitBack;
     uint face = isFace ? hit.face : 0u;
     vec3 radiosity = faceRadiosity[face];
@@ -153,7 +158,9 @@ void main() {
       skySum += info.skyRadiance + SkyValues(sky).values[skyCell(way.direction, info.skyTurn)];
     }
   }
-  if (kSkyImage && isPixel) imageStore(rawSkyImage, ivec2(pixel), vec4(end > 0u ? 3.14159265358979 / float(rays) * skySum : vec3(0.0), 0.0));
-  if (kEmitted && isPixel) imageStore(rawEmittedImage, ivec2(pixel), vec4(end > 0u ? emittedSum / float(rays) : vec3(0.0), 0.0));
-  if (isPixel) imageStore(rawImage, ivec2(pixel), end > 0u ? sum / float(rays) : vec4(0.0));
+  if (!isPixel) return;
+  bool done = endRay == rays;
+  if (kSkyImage) imageStore(rawSkyImage, ivec2(pixel), vec4(done ? 3.14159265358979 / float(rays) * skySum : skySum, 0.0));
+  if (kEmitted) imageStore(rawEmittedImage, ivec2(pixel), vec4(done ? emittedSum / float(rays) : emittedSum, 0.0));
+  imageStore(rawImage, ivec2(pixel), done ? sum / float(rays) : sum);
 }

@@ -22,17 +22,17 @@ void writeRay(uint row, uint at, uint place) {
   rays[place] = BenchRay(origin, start.excluded, way.direction, own);
 }
 
-float castRay(BenchRay ray, uint random, bool live) {
+float castRay(BenchRay ray, uint random) {
   TraversalRay way = makeTraversalRay(ray.origin, ray.direction);
   if (kTask == kBenchTraversal) {
     TraversalCursor cursor;
-    live = traversalBegin(way, vec3(castSize), cursor) && live;
-    if (!live) cursor = TraversalCursor(vec3(-1.0), 0.0);
-    castMarch(way, cursor, live);
+    bool enters = traversalBegin(way, vec3(castSize), cursor);
+    if (!enters) cursor = TraversalCursor(vec3(-1.0), 0.0);
+    castMarch(way, cursor, enters);
     return isOutside(cursor.voxel) ? -1.0 : cursor.time;
   }
   float triangles = kTask == kBenchWalk ? triangleDistance : 0.0;
-  WalkHit hit = walkRay(way, voxelAt(ray.origin), ray.excluded, ray.own, kPieceLift, triangles, random, live);
+  WalkHit hit = walkRay(way, voxelAt(ray.origin), ray.excluded, ray.own, kPieceLift, triangles, random);
   return hit.face == kHitNothing ? -1.0 : hit.time;
 }
 
@@ -41,15 +41,12 @@ void main() {
   uint lanes = (rowCount + 63u) & ~63u;
   uint item = radivoxItemIndex();
   uint slot = item % lanes;
-  // No lane leaves early (castMarch): those without a ray follow another one and write nothing.
-  bool live = slot < rowCount && item / lanes < rayCount;
-  slot = min(slot, rowCount - 1u);
-  uint at = min(item / lanes, rayCount - 1u);
+  uint at = item / lanes;
+  if (slot >= rowCount || at >= rayCount) return;
   uint place = at * rowCount + slot;
   if (kTask <= kBenchLifted) {
-    if (live) writeRay(order[slot], at, place);
+    writeRay(order[slot], at, place);
     return;
   }
-  float time = castRay(rays[place], rayRandom(slot, at), live);
-  if (live) times[place] = time;
+  times[place] = castRay(rays[place], rayRandom(slot, at));
 }

@@ -40,7 +40,7 @@ void main() {
       vec3 about;
       uint own;
       TraversalRay way = rayFromPiece(start, at, about, own);
-      WalkHit hit = walkRay(way, voxelAt(way.origin), start.excluded, own, kPieceLift, triangleDistance, rayRandom(start.seed, at), true);
+      WalkHit hit = walkRay(way, voxelAt(way.origin), start.excluded, own, kPieceLift, triangleDistance, rayRandom(start.seed, at));
       hits[row * rayCount + at] = hitWord(hit.face, hit.time, way.direction);
     }
     return;
@@ -63,7 +63,7 @@ void main() {
     bool atStart = fresh && start.crowded;
     if (castMarch(way, cursor, !atStart)) inFront = 0u;
     bool outside = isOutside(cursor.voxel);
-    uint hit = castFace(way, cursor, true, atStart ? start.excluded : 0u, inFront, rayRandom(start.seed, at));
+    uint hit = castFace(way, cursor, atStart ? start.excluded : 0u, inFront, rayRandom(start.seed, at));
     fresh = outside || hit != kHitNothing;
     if (fresh) {
       hits[row * rayCount + at] = hitWord(outside ? kHitNothing : hit, cursor.time, way.direction);
