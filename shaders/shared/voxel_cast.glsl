@@ -63,7 +63,7 @@ uint mostPasses() { return castSize.x + castSize.y + castSize.z + 5u; }
 #ifdef RADIVOX_BIND_CLEARANCE
 layout(set = 0, binding = RADIVOX_BIND_CLEARANCE) uniform usamplerBuffer clearanceTexels;
 
-// castMarch, by clearance. As traversalLeave() for the cube, but in a grid mirrored so that the ray goes up every axis: negation is exact, so times
+// castMarch, by clearance. As traversalLeave() for the box, but in a grid mirrored so that the ray goes up every axis: negation is exact, so times
 // keep their bits, and a pass needs no test of which way the ray goes.
 bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live) {
   vec3 turn = 2.0 * ray.forward - 1.0;
@@ -74,19 +74,20 @@ bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live)
   vec3 direction = abs(ray.direction);
   float time = cursor.time;
   // clearanceIndex() of the mirrored voxel: what it adds up to along x and y is exact in floats.
-  float row = float(clearanceRowBytes(castSize));
+  float row = float(castSize.x + 2u);
   vec2 across = vec2(1.0, row) * turn.xy;
   float base = dot(vec2(1.0, row), ray.forward.xy);
-  int slice = int(clearanceRowBytes(castSize) * (castSize.y + 2u));
+  int slice = int((castSize.x + 2u) * (castSize.y + 2u));
   int up = ray.forward.z > 0.5 ? slice : -slice;
   int ground = ray.forward.z > 0.5 ? slice : 0;
+  uvec3 shifts = kClearanceBits * (uvec3(0u, 2u, 4u) + uvec3(back));
   bool moved = false;
   for (uint passes = live ? mostPasses() : 0u; passes > 0u; --passes) {
     uint i = uint(int(voxel.x * across.x + voxel.y * across.y + base) + int(voxel.z) * up + ground);
-    float clearance = float((texelFetch(clearanceTexels, int(i >> 2)).x >> (8u * (i & 3u))) & 0xffu);
-    if (clearance == 0.0) break;
+    uint clearance = texelFetch(clearanceTexels, int(i)).x;
+    if (clearance == 0u) break;
     moved = true;
-    precise vec3 plane = voxel + clearance;
+    precise vec3 plane = voxel + 1.0 + vec3((uvec3(clearance) >> shifts) & kMostClearance);
     precise vec3 times = (plane - origin) * inverse;
     float exit = min(times.x, min(times.y, times.z));
     bool x = times.x <= times.y && times.x <= times.z;

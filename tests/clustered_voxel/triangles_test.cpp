@@ -365,7 +365,7 @@ TEST_F(TrianglesTest, SlowCornersAndVerticesGiveTheSameBits) {
     if (!corners) options.disconnected = {"visibility.corners", "gather_pixels.corners"};
     Pipeline p(oracles::sharedDevice(), scene::loadScene("builtin:cornell_point"), options);
     p.run();
-    EXPECT_EQ(p.executor->findImage("triangles.corners") != nullptr, corners);
+    EXPECT_EQ(p.executor->findBuffer("triangles.corners") != nullptr, corners);
     return std::pair(p.buffer<uint32_t>("visibility.weights"), p.picture("gather_pixels.irradiance").data);
   };
   const auto [weights, picture] = render(true);

@@ -144,28 +144,54 @@ TEST_F(VisibilityWalkTest, LeapingEqualsStepping) {
   }
 }
 
-TEST_F(VisibilityWalkTest, ClearanceIsTheDistanceToTheNearestFace) {
-  for (const uint32_t n : {5u, 21u}) {
+TEST_F(VisibilityWalkTest, ClearanceBoxesAreEmptyAndGoOnUntilSomethingIsInTheWay) {
+  for (const uint32_t n : {5u, 21u, 70u}) {
     const VoxelStructures s = oracle::buildVoxelStructures(oracle::randomSoup(n, 6), n);
     oracle::VisibilityRun run(device(), s, {.rays = 1}, oracle::runLabels(s.faces.size(), 7));
     run.harness.run();
     const auto words = run.harness.downloadGrown<uint32_t>("visibility.clearance").at(0);
     EXPECT_TRUE(run.harness.executor().findGrown("visibility.clearance_work").empty());
     const ivec3 size(s.grid.size);
-    for (int z = -1; z <= size.z; ++z) {
-      for (int y = -1; y <= size.y; ++y) {
-        for (int x = -1; x <= size.x; ++x) {
-          int nearest = std::min({x + 1, y + 1, z + 1, size.x - x, size.y - y, size.z - z});
-          for (uint32_t v = 0; v < s.voxels.size(); ++v) {
-            const ivec3 away = glm::abs(ivec3(s.voxelCoordinate(v)) - ivec3(x, y, z));
-            if (s.mask[v] != 0) nearest = std::min(nearest, std::max({away.x, away.y, away.z}));
+    const auto isFree = [&](const ivec3& at) {
+      const uint32_t voxel = s.isInside(at) ? s.voxelIndex(at) : shared::kNone;
+      return s.isInside(at) && (voxel == shared::kNone || s.mask[voxel] == 0);
+    };
+    const auto isFreeBox = [&](const ivec3& low, const ivec3& high) {
+      for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+          for (int x = low.x; x <= high.x; ++x)
+            if (!isFree({x, y, z})) return false;
+      return true;
+    };
+    const int step = n > 32 ? 3 : 1;  // every voxel of small grids, some of large ones
+    uint64_t longest = 0;
+    for (int z = -1; z <= size.z; z += step) {
+      for (int y = -1; y <= size.y; y += step) {
+        for (int x = -1; x <= size.x; x += step) {
+          const ivec3 at(x, y, z);
+          const uint32_t word = words.at(shared::clearanceIndex(glm::uvec3(at + 1), s.grid.size));
+          ASSERT_EQ(word & shared::kClearanceOpen, isFree(at) ? shared::kClearanceOpen : 0u) << x << " " << y << " " << z;
+          if (word == 0) continue;
+          ivec3 low = at, high = at;
+          for (uint32_t f = 0; f < shared::kFaceCount; ++f) {
+            const auto reach = static_cast<int>((word >> (shared::kClearanceBits * f)) & shared::kMostClearance);
+            (f % 2 == 0 ? high : low)[static_cast<int>(f / 2)] += f % 2 == 0 ? reach : -reach;
+            longest = std::max<uint64_t>(longest, static_cast<uint64_t>(reach));
           }
-          const uint32_t index = shared::clearanceIndex(glm::uvec3(ivec3(x, y, z) + 1), s.grid.size);
-          const uint32_t found = (words.at(index / 4) >> (8 * (index % 4))) & 0xff;
-          ASSERT_EQ(found, std::min<uint32_t>(static_cast<uint32_t>(nearest), shared::kMaxClearance)) << x << " " << y << " " << z;
+          ASSERT_TRUE(isFreeBox(low, high)) << x << " " << y << " " << z;
+          for (int k = 0; k < 3; ++k) {
+            ivec3 beyondLow = low, beyondHigh = high;
+            beyondLow[k] = beyondHigh[k] = high[k] + 1;
+            ASSERT_TRUE(high[k] - at[k] == static_cast<int>(shared::kMostClearance) || !isFreeBox(beyondLow, beyondHigh))
+                << x << " " << y << " " << z;
+            beyondLow[k] = beyondHigh[k] = low[k] - 1;
+            ASSERT_TRUE(at[k] - low[k] == static_cast<int>(shared::kMostClearance) || !isFreeBox(beyondLow, beyondHigh))
+                << x << " " << y << " " << z;
+          }
         }
       }
     }
+    EXPECT_EQ(longest, n > 32 ? shared::kMostClearance : longest);
   }
 }
 

@@ -24,9 +24,7 @@ constexpr uint32_t kTracePushBytes = 24;
 
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
 
-uint64_t clearanceBytes(const shared::Grid& grid) {
-  return uint64_t{shared::clearanceRowBytes(grid.size)} * (grid.size.y + 2) * (grid.size.z + 2);
-}
+uint64_t clearanceBytes(const shared::Grid& grid) { return uint64_t{4} * (grid.size.x + 2) * (grid.size.y + 2) * (grid.size.z + 2); }
 
 }  // namespace
 
@@ -85,7 +83,7 @@ void Visibility::declare(graph::Declaration& d) {
           "first bit of each row within its chunk");
   d.write("chunk_table", Shape::buffer(8, faces / kRowsPerChunk + 1), "device address of each chunk of entries");
   d.write("entries", {}, "clusters and faces that rays met, and how many did: shared/visibility_row.h").growable = true;
-  d.write("clearance", {}, "u8 per voxel and rim: half-size of the empty cube around it").growable = true;
+  d.write("clearance", {}, "u32 per voxel and rim: the empty box around it, shared/clearance.h").growable = true;
   d.write("clearance_work", {}, "between two passes; freed at once").growable = true;
   d.write("planes", {}, "what rays are stopped by: shared/voxel_plane.h").growable = true;
   d.write("plane_extras", Shape::buffer(4, Extent::of("voxels")), "where the planes of a voxel after its first are");
@@ -138,9 +136,9 @@ void Visibility::prepare(graph::PrepareContext& context) {
         {{0, 2u - static_cast<uint32_t>(skip)}, {1, hit}, {2, frame}, {3, near}, {4, masked}, {6, corners}, {7, skyImage}, {8, someRays}});
   };
   if (traversal_ == Traversal::Dda && skip_ == Skip::Clearance) {
-    clearanceRows_ = make("clustered_voxel/visibility/clearance_rows.comp", 5, 0, {});
-    clearancePlanes_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 1}});
-    clearanceSpace_ = make("clustered_voxel/visibility/clearance_columns.comp", 3, 0, {{0, 2}});
+    for (uint32_t axis = 0; axis < 3; ++axis)
+      clearanceSums_[axis] = make("clustered_voxel/visibility/clearance_sums.comp", 5, 0, {{0, axis}});
+    clearanceBoxes_ = make("clustered_voxel/visibility/clearance_boxes.comp", 3, 0, {});
   }
   // Where the clearance of a large grid does not fit one binding, bricks do.
   const bool mayNeedBricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance;
@@ -280,17 +278,15 @@ void Visibility::recordClearance(graph::RecordContext& context) {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& result = *context.grown("clearance").at(0);
   const gpu::Buffer& work = *context.grown("clearance_work").at(0);
-  const uint64_t rows = uint64_t{grid_.size.y + 2} * (grid_.size.z + 2);
-  const uint64_t words = clearanceBytes(grid_) / 4;
-  commands.bind(clearanceRows_,
-                {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"), result});
-  commands.dispatchItems(rows, 64);
-  commands.barrier();
-  commands.bind(clearancePlanes_, {result, work, context.buffer("grid")});
-  commands.dispatchItems(words, 64);
-  commands.barrier();
-  commands.bind(clearanceSpace_, {work, result, context.buffer("grid")});
-  commands.dispatchItems(words, 64);
+  const glm::uvec3 size = grid_.size + 2u;
+  for (int axis = 0; axis < 3; ++axis) {
+    commands.bind(clearanceSums_[static_cast<size_t>(axis)],
+                  {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), context.buffer("mask"), work});
+    commands.dispatchItems(uint64_t{size[(axis + 1) % 3]} * size[(axis + 2) % 3], 64);
+    commands.barrier();
+  }
+  commands.bind(clearanceBoxes_, {context.buffer("grid"), work, result});
+  commands.dispatchItems(clearanceBytes(grid_) / 4, 64);
   commands.barrier();
 }
 

@@ -79,8 +79,8 @@ class Visibility : public graph::Node {
   bool keep_ = false;
   params::Table table_;
 
-  gpu::Pipeline countPlanes_, planes_, clearanceRows_, clearancePlanes_, clearanceSpace_, sortRows_, sortSome_, trace_, traceSome_,
-      traceBricks_, traceSomeBricks_, merge_, fill_;
+  gpu::Pipeline countPlanes_, planes_, clearanceSums_[3], clearanceBoxes_, sortRows_, sortSome_, trace_, traceSome_, traceBricks_,
+      traceSomeBricks_, merge_, fill_;
   KeptHits kept_;
   gpu::Buffer directions_;
   std::unique_ptr<gpu::Scan> scan_;
