@@ -120,7 +120,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   const uint32_t lists = context.has("triangle_ids") ? 1 : 0;
   sortRows_ = make("clustered_voxel/visibility/sort_rows.comp", 4, 12, {{0, lists}});
   if (keep_) sortSome_ = make("clustered_voxel/visibility/sort_rows.comp", 4, 12, {{0, lists}, {1, 1}});
-  merge_ = make("clustered_voxel/visibility/merge.comp", 7, 24, {{0, weights_ == Weights::Seen ? 1u : 0u}});
+  merge_ = make("clustered_voxel/visibility/merge.comp", 7, 24, {{0, weights_ == Weights::Seen ? 1u : 0u}, {1, rays_ <= 16 ? 1u : 0u}});
   fill_ = make("clustered_voxel/visibility/fill.comp", 4, 16, {});
   const auto frame = static_cast<uint32_t>(frame_), hit = static_cast<uint32_t>(hit_);
   const uint32_t near = lists;
