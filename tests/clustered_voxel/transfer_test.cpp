@@ -119,7 +119,7 @@ class TransferTest : public oracles::GpuTest {
 
   void check(const Case& c) {
     const Output out = transfer(c, "64");
-    const Output few = transfer(c, "16");
+    const Output few = transfer(c, "8");
     EXPECT_EQ(out.rowStart, few.rowStart);
     EXPECT_EQ(out.entries, few.entries);
     EXPECT_EQ(out.sky, few.sky);

@@ -21,8 +21,8 @@ struct Push {
 }  // namespace
 
 Transfer::Transfer()
-    : table_({params::choice("lanes", &lanes_, {"auto", "16", "64"},
-                             "lanes that make a row together (same result): auto: 16 on CPU devices for clusters of few faces, else 64",
+    : table_({params::choice("lanes", &lanes_, {"auto", "8", "64"},
+                             "lanes that make a row together (same result): auto: 8 on CPU devices for clusters of few faces, else 64",
                              params::Invalidates::Plan)}) {}
 
 void Transfer::declare(graph::Declaration& d) {
@@ -60,9 +60,9 @@ void Transfer::prepare(graph::PrepareContext& context) {
                                                                     .constants = {{0, context.has("weights") ? 1u : 0u}, {1, lanes}}});
   };
   const bool isCpu = device.capabilities().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  hasFew_ = lanes_ == Lanes::Sixteen || (lanes_ == Lanes::Auto && isCpu);
-  hasMany_ = lanes_ != Lanes::Sixteen;
-  if (hasFew_) make(few_, 16);
+  hasFew_ = lanes_ == Lanes::Eight || (lanes_ == Lanes::Auto && isCpu);
+  hasMany_ = lanes_ != Lanes::Eight;
+  if (hasFew_) make(few_, 8);
   if (hasMany_) make(many_, 64);
 }
 
@@ -74,7 +74,7 @@ void Transfer::record(graph::RecordContext& context) {
   const auto b = [&context](const char* name) -> const gpu::Buffer& { return context.buffer(name); };
   // A cluster of Sponza has ten faces: CPU devices, which stop at every barrier once for each vector of lanes, are faster with few lanes. Large
   // clusters want many: Mesa's llvmpipe ends the loops of a lane after 65535 rounds in all.
-  constexpr uint64_t kMostFacesForFew = 48;
+  constexpr uint64_t kMostFacesForFew = 24;
   const bool few = hasFew_ && (!hasMany_ || context.count("faces") <= kMostFacesForFew * clusterCount);
   const Pipelines& pipelines = few ? few_ : many_;
   if (context.step() == 0) {

@@ -25,7 +25,7 @@ namespace radivox::clustered_voxel {
 class Transfer : public graph::Node {
  public:
   static constexpr std::string_view kType = "clustered_voxel.transfer";
-  enum class Lanes : uint32_t { Auto, Sixteen, SixtyFour };
+  enum class Lanes : uint32_t { Auto, Eight, SixtyFour };
   Transfer();
   std::string_view type() const override { return kType; }
   params::Table& params() override { return table_; }

@@ -10,7 +10,8 @@
 #include "clustered_voxel/cluster/union_find.glsl"
 layout(local_size_x = kClusterGroup) in;
 layout(set = 0, binding = 6, scalar) readonly buffer Voxels { uint voxels[]; };
-layout(set = 0, binding = 7, scalar) readonly buffer SeedLabels { uint seedLabels[]; };
+layout(set = 0, binding = 7) uniform usamplerBuffer seedLabelTexels;
+uint seedLabel(uint s) { return texelFetch(seedLabelTexels, int(s)).x; }
 
 void main() {
   uint v = radivoxItemIndex();
@@ -20,7 +21,7 @@ void main() {
   uint begin = firstFace(v);
   uint count = uint(bitCount(mask));
   uint label[kFaceCount];
-  for (uint f = 0; f < kFaceCount; ++f) label[f] = f < count ? seedLabels[begin + f] : kNone;
+  for (uint f = 0; f < kFaceCount; ++f) label[f] = f < count ? seedLabel(begin + f) : kNone;
   // The first face of each seed stands for the others of this voxel once they are joined to it.
   for (uint f = 1; f < count; ++f) {
     uint same = f;
@@ -39,7 +40,7 @@ void main() {
     // Pairs of one seed, six bits a face of the other's, a bit for each of ours. Lanes take their next pair each on its own and look for walls together.
     uvec2 pairs = uvec2(0u);
     for (uint o = otherBegin; o < otherEnd; ++o) {
-      uint seed = seedLabels[o];
+      uint seed = seedLabel(o);
       uint same = 0u;
       for (uint f = 0; f < kFaceCount; ++f) same |= seed != kNone && label[f] == seed ? 1u << f : 0u;
       uint at = kFaceCount * (o - otherBegin);
