@@ -1,6 +1,6 @@
 // The clearance of a voxel: an empty box around it, which a ray may leave in one step. A word per voxel of the grid with a rim of one voxel around it.
-// 0: the voxel has faces, or is rim. Otherwise kClearanceOpen and, per direction f (as faces are numbered), how many voxels the box goes on beyond this
-// one. All voxels of the box are in the grid and without faces.
+// Without kClearanceOpen: the voxel's compact index + 1 if it has faces, 0 if it is rim. With it, per direction f (as faces are numbered), how many
+// voxels the box goes on beyond this one; all voxels of the box are in the grid and without faces.
 #ifndef RADIVOX_SHADERS_SHARED_CLEARANCE_H
 #define RADIVOX_SHADERS_SHARED_CLEARANCE_H
 #include "types.h"

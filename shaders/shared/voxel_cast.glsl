@@ -65,7 +65,7 @@ layout(set = 0, binding = RADIVOX_BIND_CLEARANCE) uniform usamplerBuffer clearan
 
 // castMarch, by clearance. As traversalLeave() for the box, but in a grid mirrored so that the ray goes up every axis: negation is exact, so times
 // keep their bits, and a pass needs no test of which way the ray goes.
-bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live) {
+bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live, out uint found) {
   vec3 turn = 2.0 * ray.forward - 1.0;
   vec3 back = 1.0 - ray.forward;
   vec3 voxel = cursor.voxel * turn - back;
@@ -82,19 +82,20 @@ bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live)
   int ground = ray.forward.z > 0.5 ? slice : 0;
   uvec3 shifts = kClearanceBits * (uvec3(0u, 2u, 4u) + uvec3(back));
   bool moved = false;
-  for (uint passes = live ? mostPasses() : 0u; passes > 0u; --passes) {
+  uint clearance;
+  for (uint passes = mostPasses(); passes > 0u; --passes) {
     uint i = uint(int(voxel.x * across.x + voxel.y * across.y + base) + int(voxel.z) * up + ground);
-    uint clearance = texelFetch(clearanceTexels, int(i)).x;
-    if (clearance == 0u) break;
+    clearance = texelFetch(clearanceTexels, int(i)).x;
+    if (!live || (clearance & kClearanceOpen) == 0u) break;
     moved = true;
     precise vec3 plane = voxel + 1.0 + vec3((uvec3(clearance) >> shifts) & kMostClearance);
     precise vec3 times = (plane - origin) * inverse;
-    float exit = min(times.x, min(times.y, times.z));
     bool x = times.x <= times.y && times.x <= times.z;
     bool y = !x && times.y <= times.z;
     bool z = !(x || y);
+    float exit = x ? times.x : (y ? times.y : times.z);  // cheaper than min(), which asks what is no number
     precise vec3 guess = floor(origin + exit * direction - 0.5 / 256.0);
-    guess = max(guess, voxel);
+    guess = mix(guess, voxel, lessThan(guess, voxel));
     precise vec3 next = (guess + 1.0 - origin) * inverse;
     bvec3 crossed = lessThan(next, vec3(exit));
     crossed.x = crossed.x || (next.x == exit && !x);
@@ -105,6 +106,7 @@ bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live)
   }
   cursor.voxel = (voxel + back) * turn;
   cursor.time = time;
+  found = (clearance & kClearanceOpen) == 0u ? clearance - 1u : kNone;
   return moved;
 }
 #endif
@@ -131,10 +133,11 @@ bool castEmptyBox(TraversalCursor cursor, out vec3 low, out vec3 high) {
   return !isOutside(cursor.voxel) && (distance > 0u || !hasBit(brickBits(brick), bitOf(voxel)));
 }
 
-// Moves on, if `live`, until the cursor is in a voxel that may have faces, or outside. Returns whether it moved.
-bool castMarch(TraversalRay ray, inout TraversalCursor cursor, bool live) {
+// Moves on, if `live`, until the cursor is in a voxel that may have faces, or outside. Returns whether it moved. `voxel`: where the cursor is then, kNone:
+// outside (or, unless it is `live`, in a voxel without faces).
+bool castMarch(TraversalRay ray, inout TraversalCursor cursor, bool live, out uint voxel) {
 #ifdef RADIVOX_BIND_CLEARANCE
-  if (RADIVOX_SKIP == kSkipClearance) return marchByClearance(ray, cursor, live);
+  if (RADIVOX_SKIP == kSkipClearance) return marchByClearance(ray, cursor, live, voxel);
 #endif
   bool moved = false;
   for (uint passes = live ? mostPasses() : 0u; passes > 0u; --passes) {
@@ -143,6 +146,7 @@ bool castMarch(TraversalRay ray, inout TraversalCursor cursor, bool live) {
     traversalLeave(ray, low, high, cursor);
     moved = true;
   }
+  voxel = isOutside(cursor.voxel) ? kNone : voxelIndex(ivec3(cursor.voxel));
   return moved;
 }
 
@@ -187,17 +191,13 @@ struct PlaneHit {
   vec3 normal;  // of the plane, on the side that the ray sees; |x| + |y| + |z| = 1
 };
 
-// The first plane of the cursor's voxel that the ray meets before it leaves the voxel; none where the cursor is outside. Planes in `excluded` do not
+// The first plane of the cursor's voxel, which is `voxel`, that the ray meets before it leaves it; none where that is kNone. Planes in `excluded` do not
 // count. `inFront` carries rule (1) from voxel to voxel: 0 where the voxel before had no faces.
-PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uint inFront) {
+PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint voxel, uint excluded, inout uint inFront) {
   uint wasInFront = inFront;
   inFront = 0u;
-  uvec3 coordinate = uvec3(clamp(cursor.voxel, vec3(0.0), vec3(castSize - 1u)));
-  uint brick = brickOf(coordinate, castBricks);
-  uint bit = bitOf(coordinate);
-  uvec2 word = brickBits(brick);
-  bool occupied = !isOutside(cursor.voxel) && hasBit(word, bit);
-  uint voxel = min(rankOf(brick) + countBitsBelow(word, bit), RADIVOX_VOXEL_COUNT - 1u);
+  bool exists = voxel != kNone;
+  voxel = exists ? voxel : 0u;
   uvec2 plane = planeAt(voxel);
   uint mask = plane.x >> 26;
   vec3 exits = traversalExits(ray, cursor.voxel);
@@ -211,7 +211,7 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint excluded, inou
   float bestWhole = 1.0;
   vec3 bestNormal = vec3(0.0);
   uint bestFaces = 0u;
-  bool more = occupied && mask != 0u;
+  bool more = exists && mask != 0u;
   for (uint i = 0u; more; ++i) {
     vec3 n = planeNormal(plane.x);
     bool counts = ((excluded >> i) & 1u) == 0u;
@@ -275,8 +275,8 @@ uint faceOfPlane(TraversalRay ray, PlaneHit hit, uint random) {
   return hit.faces == 0u ? kHitNothing : (total > 0.0 ? face : kHitBack);
 }
 
-uint castFace(TraversalRay ray, TraversalCursor cursor, uint excluded, inout uint inFront, uint random) {
-  return faceOfPlane(ray, castPlane(ray, cursor, excluded, inFront), random);
+uint castFace(TraversalRay ray, TraversalCursor cursor, uint voxel, uint excluded, inout uint inFront, uint random) {
+  return faceOfPlane(ray, castPlane(ray, cursor, voxel, excluded, inFront), random);
 }
 
 #endif

@@ -38,20 +38,21 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   bool atStart = true;
   TraversalCursor last = cursor;  // the voxel before, if it was searched for triangles and the ray stepped out of it
+  uint lastVoxel = 0u;
   bool hasLast = false;
   bool met = false;
   uint voxel = 0u, listed = 0u;
   vec2 time = vec2(0.0, 1.0);
   vec3 normal = vec3(0.0);
   while (nearDistance > 0.0) {
-    if (castMarch(way, cursor, true)) atStart = hasLast = false;
-    voxel = isOutside(cursor.voxel) || cursor.time >= nearDistance ? kNone : voxelIndex(ivec3(cursor.voxel));
-    if (voxel == kNone) break;
+    if (castMarch(way, cursor, true, voxel)) atStart = hasLast = false;
+    if (voxel == kNone || cursor.time >= nearDistance) break;
     uint first = triangleFirst(voxel), end = triangleFirst(voxel + 1u);
     if (first == end) break;
     met = nearestTriangle(way, cursor, first, end, own, lift, time, normal, listed);
     if (met) break;
     last = cursor;
+    lastVoxel = voxel;
     hasLast = true;
     traversalStep(way, cursor);
     atStart = false;
@@ -60,17 +61,18 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   // front of whatever its planes say it has crossed.
   uint inFront = 0u;
   if (!met && hasLast) {
-    PlaneHit crossed = castPlane(way, last, 0u, inFront);
+    PlaneHit crossed = castPlane(way, last, lastVoxel, 0u, inFront);
     if (crossed.faces != 0u) inFront = 0x3fu;
   }
   PlaneHit plane = PlaneHit(0u, 0u, 0u, vec3(0.0));
   while (!met) {
-    if (castMarch(way, cursor, true)) {
+    uint crossed;
+    if (castMarch(way, cursor, true, crossed)) {
       inFront = 0u;
       atStart = false;
     }
-    if (isOutside(cursor.voxel)) break;
-    plane = castPlane(way, cursor, atStart ? excluded : 0u, inFront);
+    if (crossed == kNone) break;
+    plane = castPlane(way, cursor, crossed, atStart ? excluded : 0u, inFront);
     if (plane.faces != 0u) break;
     traversalStep(way, cursor);
     atStart = false;

@@ -68,8 +68,9 @@ void main() {
   do {
     if (!fresh || !(crowded || kFrame == 1)) traversalStep(way, cursor);
     bool atStart = fresh && crowded;
-    if (castMarch(way, cursor, !atStart)) inFront = 0u;
-    hit = castFace(way, cursor, atStart ? excluded : 0u, inFront, rayRandom(seed, ray));
+    uint voxel;
+    if (castMarch(way, cursor, !atStart, voxel)) inFront = 0u;
+    hit = castFace(way, cursor, voxel, atStart ? excluded : 0u, inFront, rayRandom(seed, ray));
     fresh = false;
   } while (!isOutside(cursor.voxel) && hit == kHitNothing);
   uint cluster = hit < kHitBack ? labels[hit] : kNone;

@@ -138,7 +138,7 @@ void Visibility::prepare(graph::PrepareContext& context) {
   if (traversal_ == Traversal::Dda && skip_ == Skip::Clearance) {
     for (uint32_t axis = 0; axis < 3; ++axis)
       clearanceSums_[axis] = make("clustered_voxel/visibility/clearance_sums.comp", 5, 0, {{0, axis}});
-    clearanceBoxes_ = make("clustered_voxel/visibility/clearance_boxes.comp", 3, 0, {});
+    clearanceBoxes_ = make("clustered_voxel/visibility/clearance_boxes.comp", 5, 0, {});
   }
   // Where the clearance of a large grid does not fit one binding, bricks do.
   const bool mayNeedBricks = traversal_ == Traversal::Dda && skip_ == Skip::Clearance;
@@ -285,7 +285,7 @@ void Visibility::recordClearance(graph::RecordContext& context) {
     commands.dispatchItems(uint64_t{size[(axis + 1) % 3]} * size[(axis + 2) % 3], 64);
     commands.barrier();
   }
-  commands.bind(clearanceBoxes_, {context.buffer("grid"), work, result});
+  commands.bind(clearanceBoxes_, {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), work, result});
   commands.dispatchItems(clearanceBytes(grid_) / 4, 64);
   commands.barrier();
 }

@@ -28,7 +28,8 @@ float castRay(BenchRay ray, uint random) {
     TraversalCursor cursor;
     bool enters = traversalBegin(way, vec3(castSize), cursor);
     if (!enters) cursor = TraversalCursor(vec3(-1.0), 0.0);
-    castMarch(way, cursor, enters);
+    uint voxel;
+    castMarch(way, cursor, enters, voxel);
     return isOutside(cursor.voxel) ? -1.0 : cursor.time;
   }
   float triangles = kTask == kBenchWalk ? triangleDistance : 0.0;

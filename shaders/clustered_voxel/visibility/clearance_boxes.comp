@@ -5,8 +5,10 @@
 // they were not. Along a floor it grows long: there a ray that leaves it in a step would take a voxel at a time from the cube around it.
 layout(local_size_x = 64) in;
 #define RADIVOX_BIND_GRID 0
-layout(set = 0, binding = 1) uniform usamplerBuffer sums;  // clearance_sums.comp
-layout(set = 0, binding = 2, scalar) writeonly buffer Output { uint clearance[]; };
+#define RADIVOX_BIND_OCCUPANCY 1
+#define RADIVOX_BIND_RANK 2
+layout(set = 0, binding = 3) uniform usamplerBuffer sums;  // clearance_sums.comp
+layout(set = 0, binding = 4, scalar) writeonly buffer Output { uint clearance[]; };
 #include "shared/clearance.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_lookup.glsl"
@@ -25,8 +27,9 @@ void main() {
   uvec3 size = grid.size + 2u;
   uvec3 at = uvec3(item % size.x, (item / size.x) % size.y, item / (size.x * size.y));
   if (at.z >= size.z) return;
-  if (any(equal(at, uvec3(0u))) || any(equal(at, size - 1u)) || countIn(at, at) != 0u) {
-    clearance[item] = 0u;
+  bool isRim = any(equal(at, uvec3(0u))) || any(equal(at, size - 1u));
+  if (isRim || countIn(at, at) != 0u) {
+    clearance[item] = isRim ? 0u : voxelIndex(ivec3(at) - 1) + 1u;
     return;
   }
   uvec3 low = at, high = at;

@@ -38,6 +38,7 @@ void main() {
   TraversalCursor cursor;
   bool entered = traversalBegin(ray, vec3(castSize), cursor);
   if (!entered) cursor = TraversalCursor(vec3(-1.0), 0.0);
-  castMarch(ray, cursor, entered);
+  uint voxel;
+  castMarch(ray, cursor, entered, voxel);
   if (radivoxItemIndex() < rayCount) stops[i] = TestStop(ivec3(cursor.voxel), cursor.time, entered ? 1u : 0u);
 }

@@ -61,9 +61,10 @@ void main() {
     // On from the voxel just looked at, or from the face's own if there is nothing else in it.
     if (!fresh || !(start.crowded || kFrame == 1)) traversalStep(way, cursor);
     bool atStart = fresh && start.crowded;
-    if (castMarch(way, cursor, !atStart)) inFront = 0u;
+    uint voxel;
+    if (castMarch(way, cursor, !atStart, voxel)) inFront = 0u;
     bool outside = isOutside(cursor.voxel);
-    uint hit = castFace(way, cursor, atStart ? start.excluded : 0u, inFront, rayRandom(start.seed, at));
+    uint hit = castFace(way, cursor, voxel, atStart ? start.excluded : 0u, inFront, rayRandom(start.seed, at));
     fresh = outside || hit != kHitNothing;
     if (fresh) {
       hits[row * rayCount + at] = hitWord(outside ? kHitNothing : hit, cursor.time, way.direction);

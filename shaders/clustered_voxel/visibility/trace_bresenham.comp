@@ -76,7 +76,7 @@ void main() {
     while (true) {
       if (!isInside(voxel)) break;
       uint none = 0u;
-      if (!skip) hit = castFace(way, TraversalCursor(vec3(voxel), 0.0), 0u, none, rayRandom(seed, ray));
+      if (!skip) hit = castFace(way, TraversalCursor(vec3(voxel), 0.0), voxelIndex(voxel), 0u, none, rayRandom(seed, ray));
       if (hit != kHitNothing) break;
       skip = false;
       ++i;
