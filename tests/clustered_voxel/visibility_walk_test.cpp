@@ -171,7 +171,10 @@ TEST_F(VisibilityWalkTest, ClearanceBoxesAreEmptyAndGoOnUntilSomethingIsInTheWay
           const ivec3 at(x, y, z);
           const uint32_t word = words.at(shared::clearanceIndex(glm::uvec3(at + 1), s.grid.size));
           ASSERT_EQ(word & shared::kClearanceOpen, isFree(at) ? shared::kClearanceOpen : 0u) << x << " " << y << " " << z;
-          if (word == 0) continue;
+          if (!isFree(at)) {
+            ASSERT_EQ(word, s.isInside(at) ? s.voxelIndex(at) + 1 : 0u) << x << " " << y << " " << z;
+            continue;
+          }
           ivec3 low = at, high = at;
           for (uint32_t f = 0; f < shared::kFaceCount; ++f) {
             const auto reach = static_cast<int>((word >> (shared::kClearanceBits * f)) & shared::kMostClearance);
