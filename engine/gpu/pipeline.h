@@ -17,7 +17,7 @@ enum class BindingType : uint8_t {
   UniformBuffer,
   StorageImage,  ///< layout GENERAL
   SampledImage,  ///< combined image sampler, nearest, clamp to edge; layout GENERAL (colour) or DEPTH_READ_ONLY_OPTIMAL
-  TexelBuffer,   ///< a buffer as texels (Buffer::texels): what lanes load from scattered places, which CPU devices do lane by lane otherwise
+  TexelBuffer,  ///< a buffer as texels (Buffer::texels): what lanes load from scattered places, which CPU devices do lane by lane otherwise
 };
 
 constexpr uint32_t kMaxBindings = 32;  ///< what every device with push descriptors allows
@@ -79,7 +79,7 @@ class Pipeline {
   VkPipelineLayout layout() const { return layout_; }
   VkDescriptorSetLayout setLayout() const { return setLayout_; }
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
-  const std::vector<BindingType>& bindings() const { return bindings_; }  ///< as the shader has them
+  const std::vector<BindingType>& bindings() const { return bindings_; }    ///< as the shader has them
   const std::vector<ImageKind>& imageKinds() const { return imageKinds_; }  ///< one per binding; buffers have the default
   uint32_t pushConstantBytes() const { return pushConstantBytes_; }
   VkShaderStageFlags stages() const { return stages_; }

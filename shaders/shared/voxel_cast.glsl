@@ -2,8 +2,8 @@
 // tests/oracles/traversal_oracle.h says the same on the CPU.
 //
 // Before including, bind GRID, OCCUPANCY, RANK of voxel_lookup.glsl, RADIVOX_BIND_CAST_FIRST (faces first), RADIVOX_BIND_PLANES and
-// RADIVOX_BIND_PLANE_EXTRAS (shared/voxel_plane.h), define RADIVOX_VOXEL_COUNT (V); DISTANCE for kSkipBricks, RADIVOX_BIND_CLEARANCE for kSkipClearance, and define RADIVOX_SKIP and RADIVOX_HIT
-// (constants of the values below). Call castBegin() first.
+// RADIVOX_BIND_PLANE_EXTRAS (shared/voxel_plane.h), DISTANCE for kSkipBricks, RADIVOX_BIND_CLEARANCE (shared/clearance.h) for kSkipClearance; define
+// RADIVOX_VOXEL_COUNT (V), RADIVOX_SKIP and RADIVOX_HIT (constants of the values below). Call castBegin() first.
 //
 // Which face is hit (kHitPlane). Taking every occupied voxel for a wall stops rays on the next step of the very surface they leave;
 // lifting origins off the surface puts some into the next room. So the faces of a voxel stand for planes: those whose mean
@@ -29,8 +29,8 @@
 #include "shared/voxel_plane.h"
 
 const uint kSkipNothing = 0u;    // plain steps
-const uint kSkipBricks = 1u;     // brickDistances[]: leap over empty bricks
-const uint kSkipClearance = 2u;  // clearance[]: leap out of the empty cube around the voxel
+const uint kSkipBricks = 1u;     // leap over empty bricks
+const uint kSkipClearance = 2u;  // leap out of the empty box around the voxel
 const uint kHitPlane = 0u;
 const uint kHitVoxel = 1u;
 
@@ -63,7 +63,7 @@ uint mostPasses() { return castSize.x + castSize.y + castSize.z + 5u; }
 #ifdef RADIVOX_BIND_CLEARANCE
 layout(set = 0, binding = RADIVOX_BIND_CLEARANCE) uniform usamplerBuffer clearanceTexels;
 
-// castMarch, by clearance. As traversalLeave() for the box, but in a grid mirrored so that the ray goes up every axis: negation is exact, so times
+// castMarch() by clearance. As traversalLeave() for the box, but in a grid mirrored so that the ray goes up every axis: negation is exact, so times
 // keep their bits, and a pass needs no test of which way the ray goes.
 bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live, out uint found) {
   vec3 turn = 2.0 * ray.forward - 1.0;

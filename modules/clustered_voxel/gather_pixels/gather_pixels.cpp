@@ -56,7 +56,7 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.read("distance", "bricks to the nearest occupied brick, four bytes a word");
   d.read("planes", "what rays are stopped by");
   d.read("plane_extras", "where the planes of a voxel after its first are");
-  d.read("clearance", "half-size of the empty cube around each voxel").optional = true;
+  d.read("clearance", "the empty box around each voxel").optional = true;
   d.read("face_radiosity", "reflected radiosity, W/m²");
   // Emitters shine from many samples: too many to look up one by one.
   const bool shadow = near_ > 0.f && shadow_ && d.traits.emissiveTriangleCount == 0 && d.traits.punctualLightCount() > 0;

@@ -42,7 +42,7 @@ Visibility::Visibility()
                           "plane: a ray stops where it crosses the mean plane of a voxel's surface; voxel: at any voxel with faces",
                           params::Invalidates::Plan),
            params::choice("skip", &skip_, {"clearance", "bricks", "none"},
-                          "how rays pass empty space (same result): a byte a voxel, a byte a brick, or voxel by voxel",
+                          "how rays pass empty space (same result): a box a voxel, 4 B; a byte a brick; or voxel by voxel",
                           params::Invalidates::Plan),
            params::number("triangles", &triangles_, {0.0, 4096.0}, "rays test triangles up to this distance, voxels",
                           params::Invalidates::Plan),

@@ -6,14 +6,14 @@
 // writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first bit of each row within its chunk
 //         entries+ bits                               rows, a buffer a chunk: shared/visibility_row.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
-//         clearance+ u8 × voxels with a rim           empty half-size about each voxel (shared/clearance.h); none for skip=bricks, none
+//         clearance+ u32 × voxels with a rim          empty box about each voxel (shared/clearance.h); none for skip=bricks, none
 //         planes+ uvec2, plane_extras u32 × V         what rays are stopped by (shared/voxel_plane.h)
 //         weights u32 × F                             Σ a over the rays that hit the face from beyond 2 h, in 1/64 h²; 0: nobody sees it
 //         kept_even+, kept_odd+                        keep: what each ray hit, and hashes of voxels (kept_hits.h); one of the two, by turns
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
 // cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
-//         of scratch; about 14 bits an entry; one byte a voxel of the grid (twice while it is made)
+//         of scratch; about 14 bits an entry; four bytes a voxel of the grid (twice while it is made)
 // source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
 //
 // Directions are cosine-distributed about n_s, so m_{s,c} / M is the form factor, visibility included. With triangles, rays start on pieces of the
