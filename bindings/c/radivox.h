@@ -11,7 +11,7 @@
  * Units     Metres, radians, W/m² (irradiance, directional lights), W/sr (point and spot lights), W/(m² sr) (radiance, emission); colours
  *           are linear Rec. 709. Right-handed, y up; a camera looks along −z. Images' rows go from the top.
  * Threads   One thread at a time for a device and all that is made on it; different devices may have different threads.
- *           radivoxLastError() is a thread's own.
+ *           radivoxLastError() is a thread's own. Pipelines are compiled by threads of Radivox's own, which end before the call does.
  *
  * docs/embedding.md tells the frame step by step; samples/embed/c is a host in C.
  */

@@ -6,14 +6,7 @@
 
 namespace radivox::gpu {
 
-CompilePool::~CompilePool() {
-  {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-  }
-  some_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
-}
+CompilePool::~CompilePool() { finish(); }
 
 std::future<VkPipeline> CompilePool::run(Task task) {
   std::packaged_task<VkPipeline()> packaged(std::move(task));
@@ -36,15 +29,20 @@ std::future<VkPipeline> CompilePool::run(Task task) {
 }
 
 void CompilePool::finish() {
-  std::unique_lock lock(mutex_);
-  none_.wait(lock, [this] { return queue_.empty() && idle_ == threads_.size(); });
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  some_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
+  ends_ = false;
 }
 
 void CompilePool::work() {
   std::unique_lock lock(mutex_);
   while (true) {
     ++idle_;
-    none_.notify_all();
     some_.wait(lock, [this] { return ends_ || !queue_.empty(); });
     --idle_;
     if (queue_.empty()) return;

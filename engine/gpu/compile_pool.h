@@ -13,21 +13,22 @@
 
 namespace radivox::gpu {
 
+/// For one thread at a time, as the device whose it is.
 class CompilePool {
  public:
   using Task = std::function<VkPipeline()>;
   CompilePool() = default;
-  ~CompilePool();  ///< runs what is queued
+  ~CompilePool();  ///< finish()
   CompilePool(const CompilePool&) = delete;
   CompilePool& operator=(const CompilePool&) = delete;
   /// The future throws what the task throws. Threads start as they are needed, one a core at most; where none can start, the task runs here.
   std::future<VkPipeline> run(Task task);
-  void finish();  ///< waits until nothing is queued or under way
+  void finish();  ///< runs what is queued, and ends the threads
 
  private:
   void work();
   std::mutex mutex_;
-  std::condition_variable some_, none_;
+  std::condition_variable some_;
   std::queue<std::packaged_task<VkPipeline()>> queue_;
   std::vector<std::thread> threads_;
   size_t idle_ = 0;

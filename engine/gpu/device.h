@@ -98,7 +98,7 @@ class Device {
   uint32_t queueFamily() const { return queueFamily_; }
   VkPipelineCache pipelineCache() const { return pipelineCache_; }
   CompilePool& compilePool() { return *compilePool_; }
-  /// Until all compute pipelines that were asked for are compiled; errors are thrown where a pipeline is used.
+  /// Until all compute pipelines that were asked for are compiled and the threads that did it have ended; errors are thrown where a pipeline is used.
   void waitForPipelines();
   const Capabilities& capabilities() const { return capabilities_; }
   uint32_t validationMessageCount() const { return validationMessageCount_; }
