@@ -74,10 +74,10 @@ bool marchByClearance(TraversalRay ray, inout TraversalCursor cursor, bool live,
   vec3 direction = abs(ray.direction);
   float time = cursor.time;
   // clearanceIndex() of the mirrored voxel: what it adds up to along x and y is exact in floats.
-  float row = float(castSize.x + 2u);
+  float row = float(castSize.x + 1u);
   vec2 across = vec2(1.0, row) * turn.xy;
   float base = dot(vec2(1.0, row), ray.forward.xy);
-  int slice = int((castSize.x + 2u) * (castSize.y + 2u));
+  int slice = int((castSize.x + 1u) * (castSize.y + 1u));
   int up = ray.forward.z > 0.5 ? slice : -slice;
   int ground = ray.forward.z > 0.5 ? slice : 0;
   uvec3 shifts = kClearanceBits * (uvec3(0u, 2u, 4u) + uvec3(back));

@@ -27,6 +27,10 @@ uint32_t bouncesOf(const scene::Request& request, const scene::Traits& traits) {
   return request.bounces == 0 && (traits.sky || traits.keeps(scene::Feature::Bounces)) ? 1 : request.bounces;
 }
 
+const gpu::Buffer& indirectOf(graph::RecordContext& context) {
+  return context.buffer(context.has("visibility_entries") ? "cluster_radiosity" : "indirect");
+}
+
 gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount,
                            std::vector<gpu::SpecializationConstant> constants = {}) {
   return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
@@ -84,8 +88,9 @@ void Bounce::declare(graph::Declaration& d) {
              "iterations; residual (float bits); 1: fell back; 1: residual reached, 2: rounding, 0: neither");
   d.scratch("control", Shape::buffer(sizeof(BounceControl), 1), "state of the solver",
             graph::UseCompute | graph::UseTransfer | graph::UseIndirect);
-  d.scratch("source", Shape::buffer(12, Extent::of("clusters")), "B⁰");
-  d.scratch("indirect", Shape::buffer(12, Extent::of("clusters")), "E_ind = F B");
+  // Where nothing emits by rays, B⁰ is direct_radiosity; where faces have rows, E_ind lies in cluster_radiosity until that takes its place.
+  if (emits) d.scratch("source", Shape::buffer(12, Extent::of("clusters")), "B⁰");
+  if (!needsRows) d.scratch("indirect", Shape::buffer(12, Extent::of("clusters")), "E_ind = F B");
   if (needsMatrix) {
     d.scratch("iterate", Shape::buffer(24, Extent::of("clusters")), "B before and after a step");
     d.scratch("steps", Shape::buffer(12, Extent::of("clusters")), "last change of B");
@@ -127,7 +132,7 @@ void Bounce::record(graph::RecordContext& context) {
   const auto faceCount = static_cast<uint32_t>(context.count("faces"));
   const gpu::Buffer& control = context.buffer("control");
   const gpu::Buffer& status = context.buffer("status");
-  const gpu::Buffer& indirect = context.buffer("indirect");
+  const gpu::Buffer& indirect = indirectOf(context);
   const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
   const gpu::Buffer& direct = context.buffer("direct_radiosity");
   if (clusterCount == 0) {
@@ -164,7 +169,7 @@ void Bounce::record(graph::RecordContext& context) {
     commands.barrier();
     if (hasEmission) recordEmission(context, push);
     recordSweeps(context, push, counted ? bounces - 1 : iterations_);
-    commands.bind(finishClusters_, {context.buffer("clusters"), context.buffer("source"), indirect, radiosity});
+    commands.bind(finishClusters_, {context.buffer("clusters"), hasEmission ? context.buffer("source") : direct, indirect, radiosity});
     commands.push(push);
     commands.dispatchItems(clusterCount, kGroup);
   }
@@ -188,7 +193,7 @@ void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& pus
 
 void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_t sweeps) const {
   gpu::Commands& commands = context.commands();
-  const gpu::Buffer& indirect = context.buffer("indirect");
+  const gpu::Buffer& indirect = indirectOf(context);
   const gpu::Buffer& none = indirect;  // bound where the shader reads nothing
   const bool hasRows = context.has("visibility_entries");
   const gpu::Buffer& received = push.hasEmission != 0 ? context.buffer("received") : none;
@@ -209,11 +214,13 @@ void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_
 void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push, uint32_t count) const {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& control = context.buffer("control");
-  const gpu::Buffer& source = context.buffer("source");
+  const gpu::Buffer& direct = context.buffer("direct_radiosity");
+  const bool emits = push.hasEmission != 0;
+  const gpu::Buffer& source = emits ? context.buffer("source") : direct;
   const gpu::Buffer& iterate = context.buffer("iterate");
   const gpu::Buffer& steps = context.buffer("steps");
-  commands.bind(source_, {context.buffer("clusters"), context.buffer("direct_radiosity"),
-                          push.hasEmission != 0 ? context.buffer("received") : source, context.buffer("sky"), source, control});
+  commands.bind(source_, {context.buffer("clusters"), direct, emits ? context.buffer("received") : direct, context.buffer("sky"),
+                          emits ? source : iterate, control});
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
   commands.barrier();
@@ -221,8 +228,7 @@ void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push,
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
   commands.barrier();
-  commands.bind(sweep_,
-                {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps, context.buffer("indirect"), control});
+  commands.bind(sweep_, {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps, indirectOf(context), control});
   commands.push(push);
   for (uint32_t i = 0; i < count; ++i) {
     commands.dispatchIndirect(control, offsetof(BounceControl, groups));

@@ -24,7 +24,12 @@ constexpr uint32_t kTracePushBytes = 24;
 
 uint32_t tableBits(uint32_t rayCount) { return static_cast<uint32_t>(std::bit_width(std::bit_ceil(rayCount))); }
 
-uint64_t clearanceBytes(const shared::Grid& grid) { return uint64_t{4} * (grid.size.x + 2) * (grid.size.y + 2) * (grid.size.z + 2); }
+uint64_t clearanceBytes(const shared::Grid& grid) {
+  const glm::u64vec3 size(grid.size);
+  return 4 * ((size.x + 1) * ((size.y + 1) * (size.z + 2) + 1) + 1);  // clearanceIndex() of the last rim voxel, and one
+}
+/// Voxels of the grid with its rim.
+uint64_t rimmedVoxels(const shared::Grid& grid) { return uint64_t{grid.size.x + 2} * (grid.size.y + 2) * (grid.size.z + 2); }
 
 }  // namespace
 
@@ -239,7 +244,7 @@ void Visibility::begin(graph::RecordContext& context) {
   context.clearGrown("planes");
   if (keep_) kept_.begin(context, grid_);
   start_ = std::chrono::steady_clock::now();
-  clearanceTooLarge_ = maxRange_ != 0 && clearanceBytes(grid_) > maxRange_;
+  clearanceTooLarge_ = maxRange_ != 0 && 4 * rimmedVoxels(grid_) > maxRange_;
   const uint64_t voxels = context.count("voxels");
   if (voxels == 0) return;
   uint32_t extras[2];
@@ -248,7 +253,7 @@ void Visibility::begin(graph::RecordContext& context) {
   context.grow("planes", 8 * (voxels + extras[0]));
   if (!usesClearance() || chunkCount(context) == 0) return;
   context.grow("clearance", clearanceBytes(grid_));
-  context.grow("clearance_work", clearanceBytes(grid_));
+  context.grow("clearance_work", 4 * rimmedVoxels(grid_));
 }
 
 void Visibility::countPlanes(graph::RecordContext& context) {
@@ -286,7 +291,7 @@ void Visibility::recordClearance(graph::RecordContext& context) {
     commands.barrier();
   }
   commands.bind(clearanceBoxes_, {context.buffer("grid"), context.buffer("occupancy"), context.buffer("rank"), work, result});
-  commands.dispatchItems(clearanceBytes(grid_) / 4, 64);
+  commands.dispatchItems(rimmedVoxels(grid_), 64);
   commands.barrier();
 }
 

@@ -26,8 +26,10 @@ void main() {
   if (c < push.clusterCount) {
     vec3 albedo = clusters[c].albedo;
     vec3 b = direct[c];
-    if (push.hasEmission != 0u) b += albedo * received[c];
-    source[c] = b;
+    if (push.hasEmission != 0u) {
+      b += albedo * received[c];
+      source[c] = b;  // otherwise it is `direct`
+    }
     // Row sums are 1 − sky but for rounding.
     vec3 bound = albedo * (1.0 - sky[c] + 1e-6);
     for (uint k = 0; k < 3u; ++k) {

@@ -13,7 +13,7 @@ layout(set = 0, binding = 4, scalar) writeonly buffer Output { uint clearance[];
 #include "shared/dispatch.glsl"
 #include "shared/voxel_lookup.glsl"
 
-uint sumTo(uint x, uint y, uint z) { return texelFetch(sums, int(clearanceIndex(uvec3(x, y, z), grid.size))).x; }
+uint sumTo(uint x, uint y, uint z) { return texelFetch(sums, int(x + (grid.size.x + 2u) * (y + (grid.size.y + 2u) * z))).x; }
 
 // What stands in the way in a box of rimmed coordinates, ends included; none of them 0.
 uint countIn(uvec3 low, uvec3 high) {
@@ -27,9 +27,10 @@ void main() {
   uvec3 size = grid.size + 2u;
   uvec3 at = uvec3(item % size.x, (item / size.x) % size.y, item / (size.x * size.y));
   if (at.z >= size.z) return;
+  uint place = clearanceIndex(at, grid.size);
   bool isRim = any(equal(at, uvec3(0u))) || any(equal(at, size - 1u));
   if (isRim || countIn(at, at) != 0u) {
-    clearance[item] = isRim ? 0u : voxelIndex(ivec3(at) - 1) + 1u;
+    clearance[place] = isRim ? 0u : voxelIndex(ivec3(at) - 1) + 1u;
     return;
   }
   uvec3 low = at, high = at;
@@ -49,5 +50,5 @@ void main() {
       word += step << shift;
     }
   }
-  clearance[item] = word;
+  clearance[place] = word;
 }

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 // Clearance, passes 1 to 3: how many voxels up to this one, along axis 0, then 1, then 2, a ray may not pass: those with faces, and the rim. A lane
-// sweeps a line.
+// sweeps a line of the grid with its rim, here a word a voxel.
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kAxis = 0;
 #define RADIVOX_BIND_GRID 0
@@ -10,7 +10,6 @@ layout(constant_id = 0) const uint kAxis = 0;
 #define RADIVOX_BIND_RANK 2
 #define RADIVOX_BIND_FACE_MASK 3
 layout(set = 0, binding = 4, scalar) buffer Sums { uint sums[]; };
-#include "shared/clearance.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_lookup.glsl"
 
@@ -28,7 +27,7 @@ void main() {
   at[u] = line % size[u];
   at[v] = line / size[u];
   uvec3 strides = uvec3(1u, size.x, size.x * size.y);
-  uint index = clearanceIndex(at, grid.size);
+  uint index = at.x + size.x * (at.y + size.y * at.z);
   uint sum = 0u;
   for (uint i = 0u; i < size[kAxis]; ++i, index += strides[kAxis]) {
     at[kAxis] = i;
