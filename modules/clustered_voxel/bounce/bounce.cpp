@@ -27,10 +27,6 @@ uint32_t bouncesOf(const scene::Request& request, const scene::Traits& traits) {
   return request.bounces == 0 && (traits.sky || traits.keeps(scene::Feature::Bounces)) ? 1 : request.bounces;
 }
 
-const gpu::Buffer& indirectOf(graph::RecordContext& context) {
-  return context.buffer(context.has("visibility_entries") ? "cluster_radiosity" : "indirect");
-}
-
 gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount,
                            std::vector<gpu::SpecializationConstant> constants = {}) {
   return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
@@ -88,9 +84,8 @@ void Bounce::declare(graph::Declaration& d) {
              "iterations; residual (float bits); 1: fell back; 1: residual reached, 2: rounding, 0: neither");
   d.scratch("control", Shape::buffer(sizeof(BounceControl), 1), "state of the solver",
             graph::UseCompute | graph::UseTransfer | graph::UseIndirect);
-  // Where nothing emits by rays, B⁰ is direct_radiosity; where faces have rows, E_ind lies in cluster_radiosity until that takes its place.
+  // Where nothing emits by rays, B⁰ is direct_radiosity. E_ind = F B lies in cluster_radiosity until that takes its place.
   if (emits) d.scratch("source", Shape::buffer(12, Extent::of("clusters")), "B⁰");
-  if (!needsRows) d.scratch("indirect", Shape::buffer(12, Extent::of("clusters")), "E_ind = F B");
   if (needsMatrix) {
     d.scratch("iterate", Shape::buffer(24, Extent::of("clusters")), "B before and after a step");
     d.scratch("steps", Shape::buffer(12, Extent::of("clusters")), "last change of B");
@@ -110,7 +105,7 @@ void Bounce::prepare(graph::PrepareContext& context) {
     source_ = makePipeline(device, "clustered_voxel/bounce/source.comp", 6);
     begin_ = makePipeline(device, "clustered_voxel/bounce/begin.comp", 4);
     sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 7);
-    finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 4);
+    finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 3);
   }
   finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 12, {{0, context.has("visibility_entries") ? 1u : 0u}});
 }
@@ -132,9 +127,6 @@ void Bounce::record(graph::RecordContext& context) {
   const auto faceCount = static_cast<uint32_t>(context.count("faces"));
   const gpu::Buffer& control = context.buffer("control");
   const gpu::Buffer& status = context.buffer("status");
-  const gpu::Buffer& indirect = indirectOf(context);
-  const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
-  const gpu::Buffer& direct = context.buffer("direct_radiosity");
   if (clusterCount == 0) {
     commands.fill(status, 0);
     return;
@@ -161,19 +153,15 @@ void Bounce::record(graph::RecordContext& context) {
 
   const BounceControl initial = makeControl(clusterCount, counted);
   commands.update(control, &initial, sizeof(initial));
-  commands.fill(indirect, 0);
-  if (!hasMatrix) {
-    commands.copy(direct, radiosity, static_cast<VkDeviceSize>(clusterCount) * 12);
-    commands.barrier();
-  } else {
-    commands.barrier();
-    if (hasEmission) recordEmission(context, push);
-    recordSweeps(context, push, counted ? bounces - 1 : iterations_);
-    commands.bind(finishClusters_, {context.buffer("clusters"), hasEmission ? context.buffer("source") : direct, indirect, radiosity});
-    commands.push(push);
-    commands.dispatchItems(clusterCount, kGroup);
-  }
+  commands.fill(context.buffer("cluster_radiosity"), 0);
+  commands.barrier();
+  if (hasMatrix && hasEmission) recordEmission(context, push);
+  if (hasMatrix) recordSweeps(context, push, counted ? bounces - 1 : iterations_);
+  // Faces with rows receive what clusters send in the end; others what their cluster received.
+  const bool hasRows = context.has("visibility_entries");
+  if (hasRows) recordClusters(context, push);
   recordFaces(context, push, counted ? bounces - 1 : 0);
+  if (!hasRows) recordClusters(context, push);
   commands.copy(control, status, kStatusBytes, offsetof(BounceControl, iterations));
 }
 
@@ -191,10 +179,25 @@ void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& pus
   commands.barrier();
 }
 
+/// From E_ind to B, in place.
+void Bounce::recordClusters(graph::RecordContext& context, const BouncePush& push) const {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
+  const gpu::Buffer& direct = context.buffer("direct_radiosity");
+  commands.barrier();
+  if (!context.has("entries")) {
+    commands.copy(direct, radiosity, uint64_t{push.clusterCount} * 12);
+    return;
+  }
+  commands.bind(finishClusters_, {context.buffer("clusters"), push.hasEmission != 0 ? context.buffer("source") : direct, radiosity});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kGroup);
+}
+
 void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_t sweeps) const {
   gpu::Commands& commands = context.commands();
-  const gpu::Buffer& indirect = indirectOf(context);
-  const gpu::Buffer& none = indirect;  // bound where the shader reads nothing
+  const gpu::Buffer& indirect = context.buffer("cluster_radiosity");  // unless there are rows
+  const gpu::Buffer& none = indirect;                                 // bound where the shader reads nothing
   const bool hasRows = context.has("visibility_entries");
   const gpu::Buffer& received = push.hasEmission != 0 ? context.buffer("received") : none;
   const gpu::Buffer& emission = push.hasEmission != 0 ? context.buffer("cluster_emission") : none;
@@ -228,7 +231,8 @@ void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push,
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
   commands.barrier();
-  commands.bind(sweep_, {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps, indirectOf(context), control});
+  commands.bind(sweep_, {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps,
+                         context.buffer("cluster_radiosity"), control});
   commands.push(push);
   for (uint32_t i = 0; i < count; ++i) {
     commands.dispatchIndirect(control, offsetof(BounceControl, groups));

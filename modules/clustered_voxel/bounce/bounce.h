@@ -47,6 +47,7 @@ class Bounce : public graph::Node {
 
  private:
   void recordEmission(graph::RecordContext& context, const shared::BouncePush& push) const;
+  void recordClusters(graph::RecordContext& context, const shared::BouncePush& push) const;
   void recordFaces(graph::RecordContext& context, shared::BouncePush push, uint32_t sweeps) const;
   void recordSweeps(graph::RecordContext& context, const shared::BouncePush& push, uint32_t count) const;
   shared::BounceControl makeControl(uint32_t clusterCount, bool counted) const;

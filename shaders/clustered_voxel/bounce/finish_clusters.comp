@@ -9,10 +9,9 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { BouncePush push; };
 layout(set = 0, binding = 0, scalar) readonly buffer Clusters { Cluster clusters[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer Source { vec3 source[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer Indirect { vec3 indirect[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer Radiosity { vec3 radiosity[]; };
+layout(set = 0, binding = 2, scalar) buffer Radiosity { vec3 radiosity[]; };  // E_ind before
 
 void main() {
   uint c = radivoxItemIndex();
-  if (c < push.clusterCount) radiosity[c] = source[c] + clusters[c].albedo * indirect[c];
+  if (c < push.clusterCount) radiosity[c] = source[c] + clusters[c].albedo * radiosity[c];
 }
