@@ -36,7 +36,7 @@ struct Capabilities {
   uint32_t subgroupSize = 0;
   float timestampPeriodNs = 0.f;  ///< 0: no timestamps
   VkDeviceSize maxStorageBufferRange = 0;
-  uint32_t maxTexelBufferElements = 0;  ///< words of a TexelBuffer
+  uint32_t maxTexelBufferElements = 0;  ///< of a TexelBuffer
   VkDeviceSize maxBufferSize = 0;
   VkDeviceSize deviceLocalBytes = 0;
   uint32_t maxImageDimension2D = 0;

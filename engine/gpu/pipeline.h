@@ -80,7 +80,7 @@ class Pipeline {
   VkDescriptorSetLayout setLayout() const { return setLayout_; }
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
   const std::vector<BindingType>& bindings() const { return bindings_; }    ///< as the shader has them
-  const std::vector<ImageKind>& imageKinds() const { return imageKinds_; }  ///< one per binding; buffers have the default
+  const std::vector<ImageKind>& imageKinds() const { return imageKinds_; }  ///< one per binding; other buffers have the default
   uint32_t pushConstantBytes() const { return pushConstantBytes_; }
   VkShaderStageFlags stages() const { return stages_; }
   explicit operator bool() const { return pipeline_ != VK_NULL_HANDLE || compiled_.valid(); }

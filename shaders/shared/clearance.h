@@ -20,6 +20,10 @@ RADIVOX_CONST uint kMostClearance = 31u;  // voxels
 RADIVOX_CLEARANCE_FUNCTION uint clearanceIndex(uvec3 rimmed, uvec3 size) {
   return rimmed.x + (size.x + 1u) * (rimmed.y + (size.y + 1u) * rimmed.z);
 }
+/// The same in the sums that clearance is made from, where rims are not shared.
+RADIVOX_CLEARANCE_FUNCTION uint clearanceSumIndex(uvec3 rimmed, uvec3 size) {
+  return rimmed.x + (size.x + 2u) * (rimmed.y + (size.y + 2u) * rimmed.z);
+}
 
 RADIVOX_SHARED_END
 #endif

@@ -1,6 +1,6 @@
 // Rays against the triangles in a voxel: exact, where planes of the mean surface are too coarse. Over shared/traversal.glsl. The includer
-// declares grid, vertices[], indices[], triangleMaterials[], materials[], textures[] (for alpha masks), `uniform usamplerBuffer` triangleFirstTexels and triangleIdTexels
-// (clustered_voxel.triangles), kMasked, `uniform samplerBuffer triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
+// declares grid, vertices[], indices[], triangleMaterials[], materials[], textures[] (for alpha masks), `uniform usamplerBuffer` triangleFirstTexels and
+// triangleIdTexels (clustered_voxel.triangles), kMasked, `uniform samplerBuffer triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
 // shared/texture.glsl.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL

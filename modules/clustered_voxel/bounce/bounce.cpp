@@ -27,6 +27,11 @@ uint32_t bouncesOf(const scene::Request& request, const scene::Traits& traits) {
   return request.bounces == 0 && (traits.sky || traits.keeps(scene::Feature::Bounces)) ? 1 : request.bounces;
 }
 
+/// B⁰.
+const gpu::Buffer& sourceOf(graph::RecordContext& context) {
+  return context.buffer(context.has("emission") ? "source" : "direct_radiosity");
+}
+
 gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindingCount,
                            std::vector<gpu::SpecializationConstant> constants = {}) {
   return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = shader,
@@ -183,13 +188,12 @@ void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& pus
 void Bounce::recordClusters(graph::RecordContext& context, const BouncePush& push) const {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
-  const gpu::Buffer& direct = context.buffer("direct_radiosity");
   commands.barrier();
   if (!context.has("entries")) {
-    commands.copy(direct, radiosity, uint64_t{push.clusterCount} * 12);
+    commands.copy(context.buffer("direct_radiosity"), radiosity, uint64_t{push.clusterCount} * 12);
     return;
   }
-  commands.bind(finishClusters_, {context.buffer("clusters"), push.hasEmission != 0 ? context.buffer("source") : direct, radiosity});
+  commands.bind(finishClusters_, {context.buffer("clusters"), sourceOf(context), radiosity});
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
 }
@@ -219,7 +223,7 @@ void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push,
   const gpu::Buffer& control = context.buffer("control");
   const gpu::Buffer& direct = context.buffer("direct_radiosity");
   const bool emits = push.hasEmission != 0;
-  const gpu::Buffer& source = emits ? context.buffer("source") : direct;
+  const gpu::Buffer& source = sourceOf(context);
   const gpu::Buffer& iterate = context.buffer("iterate");
   const gpu::Buffer& steps = context.buffer("steps");
   commands.bind(source_, {context.buffer("clusters"), direct, emits ? context.buffer("received") : direct, context.buffer("sky"),

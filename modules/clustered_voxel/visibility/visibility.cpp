@@ -111,7 +111,9 @@ void Visibility::declare(graph::Declaration& d) {
 void Visibility::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   constexpr auto kB = BindingType::StorageBuffer;
-  maxRange_ = device.capabilities().maxStorageBufferRange;
+  // Clearance is written as a storage buffer and read as texels, words.
+  const gpu::Capabilities& can = device.capabilities();
+  maxRange_ = std::min<VkDeviceSize>(can.maxStorageBufferRange, uint64_t{4} * can.maxTexelBufferElements);
   scan_ = std::make_unique<gpu::Scan>(device);
   const auto make = [&](std::string_view shader, size_t bindings, uint32_t pushBytes, std::vector<gpu::SpecializationConstant> constants) {
     std::vector<BindingType> types(bindings, kB);

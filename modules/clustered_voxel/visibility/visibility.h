@@ -12,7 +12,7 @@
 //         kept_even+, kept_odd+                        keep: what each ray hit, and hashes of voxels (kept_hits.h); one of the two, by turns
 //         [entries]
 // runs    when the scene, the voxels or the clusters change: host-paced, a chunk of kRowsPerChunk faces a step
-// cost    M rays a face, each about 10 leaps of one byte fetch and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
+// cost    M rays a face, each a few leaps of one word fetched and 2 looks at a voxel's faces; per chunk M + 2·2^⌈log2 M⌉ words a row
 //         of scratch; about 14 bits an entry; four bytes a voxel of the grid (twice while it is made)
 // source  METHODS section 1, Face visibility; traversal=bresenham, frame=axis and hit=voxel are the paper's (4.3)
 //

@@ -13,7 +13,7 @@ layout(set = 0, binding = 4, scalar) writeonly buffer Output { uint clearance[];
 #include "shared/dispatch.glsl"
 #include "shared/voxel_lookup.glsl"
 
-uint sumTo(uint x, uint y, uint z) { return texelFetch(sums, int(x + (grid.size.x + 2u) * (y + (grid.size.y + 2u) * z))).x; }
+uint sumTo(uint x, uint y, uint z) { return texelFetch(sums, int(clearanceSumIndex(uvec3(x, y, z), grid.size))).x; }
 
 // What stands in the way in a box of rimmed coordinates, ends included; none of them 0.
 uint countIn(uvec3 low, uvec3 high) {

@@ -10,6 +10,7 @@ layout(constant_id = 0) const uint kAxis = 0;
 #define RADIVOX_BIND_RANK 2
 #define RADIVOX_BIND_FACE_MASK 3
 layout(set = 0, binding = 4, scalar) buffer Sums { uint sums[]; };
+#include "shared/clearance.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_lookup.glsl"
 
@@ -27,7 +28,7 @@ void main() {
   at[u] = line % size[u];
   at[v] = line / size[u];
   uvec3 strides = uvec3(1u, size.x, size.x * size.y);
-  uint index = at.x + size.x * (at.y + size.y * at.z);
+  uint index = clearanceSumIndex(at, grid.size);
   uint sum = 0u;
   for (uint i = 0u; i < size[kAxis]; ++i, index += strides[kAxis]) {
     at[kAxis] = i;

@@ -12,6 +12,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer Vertices { Vertex vertices[
 layout(set = 0, binding = 2, scalar) readonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 3, scalar) writeonly buffer Corners { vec4 corners[]; };
 layout(push_constant, scalar) uniform Push { uint triangleCount; };
+#include "shared/triangle_normal.glsl"
 
 void main() {
   uint id = radivoxItemIndex();
@@ -19,12 +20,7 @@ void main() {
   vec3 a = vertices[indices[3u * id]].position;
   vec3 b = vertices[indices[3u * id + 1u]].position;
   vec3 c = vertices[indices[3u * id + 2u]].position;
-  precise vec3 e1 = b - a;
-  precise vec3 e2 = c - a;
-  precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-  precise float two = across.x * across.x + across.y * across.y;
-  precise float squared = two + across.z * across.z;
-  precise vec3 n = across * preciseInverseSqrt(max(squared, 1e-30));
+  vec3 n = triangleNormal(id);
   corners[3u * id] = vec4(toGridSpace(grid, a), n.x);
   corners[3u * id + 1u] = vec4(toGridSpace(grid, b), n.y);
   corners[3u * id + 2u] = vec4(toGridSpace(grid, c), n.z);
