@@ -14,6 +14,7 @@ struct Grid {
   uvec3 bricks;     // ceil(size / 4): bricks of 4×4×4 voxels
   uint brickCount;  // product
   uint singleSided; // 1: surfaces reflect on the back only where their material is double-sided (sides=gltf); 0: on both sides
+  uint dominant;    // 1: surface belongs to the one face that it looks along the most (faces=dominant); 0: to all that it looks along, by its projection
 };
 
 // Faces of a voxel, f = 0…5: +x −x +y −y +z −z. axis = f >> 1, negative if f & 1.
@@ -26,7 +27,7 @@ RADIVOX_CONST uint kFaceCount = 6u;
 // faceKey = voxel index << 3 | f. Faces are ordered by key, so face index = firstFace[voxel] + popcount(faceMask[voxel] & (2^f − 1)).
 struct Face {
   uint key;
-  float area;      // a_s in h²: Σ area · max(0, n·e_f)
+  float area;      // a_s in h²: Σ area · max(0, n·e_f); where Grid::dominant, Σ area of the surface that belongs to it
   uint normal;     // n_s, octahedral snorm16 × 2
   uint position;   // x_s inside the voxel, unorm 10:10:10, x low; kMadeOfBacks
   uvec2 albedo;    // ρ_s, unorm16: r | g << 16, b | margins << 16, see faceMargins

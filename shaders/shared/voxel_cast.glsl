@@ -24,6 +24,7 @@
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_CAST_GLSL
 #include "shared/clearance.h"
+#include "shared/face_shares.h"
 #include "shared/traversal.glsl"
 #include "shared/voxel_lookup.glsl"
 #include "shared/voxel_plane.h"
@@ -52,8 +53,10 @@ uint castFirst(uint voxel) { return texelFetch(castFirstTexels, int(voxel)).x; }
 // The grid in registers.
 uvec3 castSize;
 uvec3 castBricks;
+bool castDominant;
 void castBegin() {
   castSize = grid.size;
+  castDominant = grid.dominant != 0u;
   castBricks = grid.bricks;
 }
 
@@ -202,9 +205,10 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint voxel, uint ex
   uint mask = plane.x >> 26;
   vec3 exits = traversalExits(ray, cursor.voxel);
   float exit = min(exits.x, min(exits.y, exits.z));
+  // Surface that belongs to one face has it whatever the ray's way.
+  float leastSeen = castDominant ? 2.0 : 0.0;
   precise vec3 enterPoint = ray.origin + cursor.time * ray.direction;
   precise vec3 passage = (ray.origin + exit * ray.direction) - enterPoint;
-  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(greaterThan(ray.direction, vec3(0.0)));
 
   // The first plane that is crossed: `before` of `whole` of the passage lies in front of it.
   float bestBefore = 2.0;
@@ -218,8 +222,9 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint voxel, uint ex
     float slope = castDot(ray.direction, n);
     float side = slope > 0.0 ? -1.0 : 1.0;
     n = n * side;
-    // Directions in which the near side looks at the ray and has faces, or whose backs it has.
-    bvec3 seen = lessThan(n * ray.direction, vec3(0.0));
+    // Directions in which the near side looks (and where surface is projected, at the ray) and has faces, or whose backs it has.
+    uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
+    bvec3 seen = lessThan(n * ray.direction, vec3(leastSeen));
     uint looks = (seen.x ? 1u << facing.x : 0u) | (seen.y ? 1u << facing.y : 0u) | (seen.z ? 1u << facing.z : 0u);
     uint members = (plane.x >> 20) & 63u;
     looks &= members | (members & 21u) << 1 | ((members >> 1) & 21u);
@@ -264,8 +269,8 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint voxel, uint ex
 
 // The face that a ray hits of the plane that it meets; kHitNothing: it meets none; kHitBack. `random` is uniform.
 uint faceOfPlane(TraversalRay ray, PlaneHit hit, uint random) {
-  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(greaterThan(ray.direction, vec3(0.0)));
-  precise vec3 weight = abs(hit.normal * ray.direction);
+  uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(hit.normal, vec3(0.0)));
+  precise vec3 weight = abs(hit.normal * (castDominant ? vec3(1.0) : ray.direction));
   vec3 w = vec3((hit.faces >> facing.x) & 1u, (hit.faces >> facing.y) & 1u, (hit.faces >> facing.z) & 1u) * weight;
   precise float two = w.x + w.y;
   precise float total = two + w.z;

@@ -5,14 +5,15 @@
 #include "shared/voxel_cast.glsl"
 #include "shared/voxel_triangles.glsl"
 
-// The face of `voxel` that stands for surface with unit normal n, drawn with probability n_k²: a face of another axis is mostly other surface's.
-// kHitBack: it has none. `apart`: faces that the surface is no part of, unless it has no others.
+// The face of `voxel` that stands for surface with unit normal n: the one that it belongs to; where surface is projected, or that one is missing, drawn
+// with probability n_k²: a face of another axis is mostly other surface's. kHitBack: it has none. `apart`: faces that the surface is no part of, unless
+// it has no others.
 uint faceTowards(uint voxel, vec3 n, uint apart, uint random) {
   uint mask = planeAt(voxel).x >> 26;
   uvec3 facing = uvec3(0u, 2u, 4u) + uvec3(lessThan(n, vec3(0.0)));
   precise vec3 squares = n * n;
   uint kept = mask & ~apart;
-  precise vec3 w = squares * vec3((kept >> facing.x) & 1u, (kept >> facing.y) & 1u, (kept >> facing.z) & 1u);
+  precise vec3 w = (castDominant ? faceShares(n, true) : squares) * vec3((kept >> facing.x) & 1u, (kept >> facing.y) & 1u, (kept >> facing.z) & 1u);
   if (w.x + w.y + w.z == 0.0) w = squares * vec3((mask >> facing.x) & 1u, (mask >> facing.y) & 1u, (mask >> facing.z) & 1u);
   precise float two = w.x + w.y;
   precise float total = two + w.z;

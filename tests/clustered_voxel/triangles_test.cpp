@@ -136,13 +136,16 @@ TEST_F(TrianglesTest, CrowdedVoxelsHaveNoList) {
 
 // Sides of walls -----------------------------------------------------------------------------------------------------------------------
 
-/// A room whose walls are two skins `wall` voxels apart, turned so that nothing is in line with the grid.
-scene::Scene roomOfSkins(float wall, uint32_t resolution, bool doubleSided) {
+/// A room whose walls are two skins `wall` voxels apart, turned so that nothing is in line with the grid; `edgeOn`: so that two of them look along x
+/// the most, on either side of the edge between them.
+scene::Scene roomOfSkins(float wall, uint32_t resolution, bool doubleSided, bool edgeOn = false) {
   const float thick = wall * 7.f / static_cast<float>(resolution - 1);
   oracle::Soup soup;
   oracle::addBox(soup, glm::vec3(-2.f), glm::vec3(2.f), glm::vec3(0.5f), true);
   oracle::addBox(soup, glm::vec3(-2.f - thick), glm::vec3(2.f + thick), glm::vec3(0.5f), false);
-  const glm::quat turn = glm::angleAxis(0.4f, glm::normalize(glm::vec3(0.3f, 1.f, 0.2f)));
+  const glm::quat turn =
+      edgeOn ? glm::angleAxis(0.77f, glm::normalize(glm::vec3(0.f, -1.f, 1.f))) * glm::angleAxis(0.77f, glm::vec3(1.f, 0.f, 0.f))
+             : glm::angleAxis(0.4f, glm::normalize(glm::vec3(0.3f, 1.f, 0.2f)));
   for (oracle::SoupTriangle& t : soup) {
     t.doubleSided = doubleSided;
     for (int c = 0; c < 3; ++c) {
@@ -158,10 +161,10 @@ scene::Scene roomOfSkins(float wall, uint32_t resolution, bool doubleSided) {
   return scene;
 }
 
-Pipeline runOf(const scene::Scene& scene, uint32_t resolution) {
+Pipeline runOf(const scene::Scene& scene, uint32_t resolution, const char* faces) {
   PipelineOptions options;
   options.graph = "clustered_voxel_pixels";
-  options.settings = {{"voxelize.resolution", std::to_string(resolution)}};
+  options.settings = {{"voxelize.resolution", std::to_string(resolution)}, {"voxelize.faces", faces}};
   options.outputs = {"voxelize.grid",    "index.voxels", "triangles.first", "triangles.ids",
                      "triangles.pieces", "faces.mask",   "faces.first",     "surface.faces"};
   Pipeline p(oracles::sharedDevice(), scene, options);
@@ -176,6 +179,7 @@ struct PieceSide {
   glm::dvec3 normal{0}, middle{0};
   double area = 0;
 
+  double weightOn(int k, bool dominant) const { return area * oracle::faceShare(normal, k, dominant); }
   int faceOn(int k) const { return 2 * k + (normal[k] < 0 ? 1 : 0); }
   /// How far the piece reaches in front of another's plane, voxels.
   double reachAhead(const PieceSide& other) const {
@@ -218,141 +222,151 @@ std::vector<PieceSide> sidesIn(const scene::Scene& scene, const Lists& lists, si
 }
 
 TEST_F(TrianglesTest, PiecesAcrossAWallAreNoPartOfAFace) {
-  size_t apartCount = 0, checked = 0, unsure = 0;
-  for (const scene::Scene& scene : {roomOfSkins(0.3f, 20, false), roomOfSkins(0.5f, 20, true), randomScene(7, 60)}) {
-    Pipeline p = runOf(scene, 20);
-    const Lists lists = listsOf(p);
-    for (size_t v = 0; v < lists.voxels.size(); ++v) {
-      const std::vector<PieceSide> sides = sidesIn(scene, lists, v);
-      double most[6] = {}, second[6] = {};
-      const PieceSide* leader[6] = {};
-      for (const PieceSide& side : sides) {
-        for (int k = 0; k < 3; ++k) {
-          const int f = side.faceOn(k);
-          const double weight = side.area * std::abs(side.normal[k]);
-          if (weight > most[f]) {
-            second[f] = most[f];
-            most[f] = weight;
-            leader[f] = &side;
-          } else {
-            second[f] = std::max(second[f], weight);
+  size_t apartCount[2] = {}, checked = 0, unsure = 0;
+  const auto scenesOf = [](bool dominant) {
+    return std::vector{roomOfSkins(0.3f, 20, false, dominant), roomOfSkins(0.5f, 20, true, dominant), randomScene(7, 60)};
+  };
+  for (const bool dominant : {false, true}) {
+    for (const scene::Scene& scene : scenesOf(dominant)) {
+      Pipeline p = runOf(scene, 20, dominant ? "dominant" : "projected");
+      const Lists lists = listsOf(p);
+      for (size_t v = 0; v < lists.voxels.size(); ++v) {
+        const std::vector<PieceSide> sides = sidesIn(scene, lists, v);
+        double most[6] = {}, second[6] = {};
+        const PieceSide* leader[6] = {};
+        for (const PieceSide& side : sides) {
+          for (int k = 0; k < 3; ++k) {
+            const int f = side.faceOn(k);
+            const double weight = side.weightOn(k, dominant);
+            if (weight > most[f]) {
+              second[f] = most[f];
+              most[f] = weight;
+              leader[f] = &side;
+            } else {
+              second[f] = std::max(second[f], weight);
+            }
           }
         }
-      }
-      std::vector<uint32_t> expected(lists.first[v + 1] - lists.first[v]);
-      std::vector<bool> isUnsure(expected.size());
-      for (const PieceSide& side : sides) {
-        const size_t i = side.entry - lists.first[v];
-        uint32_t leaves = 0;
-        bool stays = false;
-        for (int k = 0; k < 3; ++k) {
-          const int f = side.faceOn(k);
-          if (leader[f] == nullptr) continue;
-          // A tie of two leaders may fall either way.
-          if (most[f] < 1e-3 || second[f] > 0.999 * most[f] || side.area < 1e-4) isUnsure[i] = true;
-          const Answer answer = leader[f]->entry == side.entry ? Answer::No : isApart(*leader[f], side);
-          if (answer == Answer::Unsure) isUnsure[i] = true;
-          if (answer == Answer::Yes)
-            leaves |= 1u << f;
-          else
-            stays = true;
+        std::vector<uint32_t> expected(lists.first[v + 1] - lists.first[v]);
+        std::vector<bool> isUnsure(expected.size());
+        for (const PieceSide& side : sides) {
+          const size_t i = side.entry - lists.first[v];
+          uint32_t leaves = 0;
+          bool stays = dominant;  // of the one face that it would be part of a piece may leave
+          for (int k = 0; k < 3; ++k) {
+            const int f = side.faceOn(k);
+            if (leader[f] == nullptr || oracle::faceShare(side.normal, k, dominant) == 0) continue;
+            // A tie of two leaders may fall either way.
+            if (most[f] < 1e-3 || second[f] > 0.999 * most[f] || side.area < 1e-4) isUnsure[i] = true;
+            const Answer answer = leader[f]->entry == side.entry ? Answer::No : isApart(*leader[f], side);
+            if (answer == Answer::Unsure) isUnsure[i] = true;
+            if (answer == Answer::Yes)
+              leaves |= 1u << f;
+            else
+              stays = true;
+          }
+          if (stays) expected[i] |= leaves;
         }
-        if (stays) expected[i] |= leaves;
-      }
-      // Surfaces all within 30 degrees of the first are one that bends; none of them is apart, but for backs of double-sided ones.
-      bool bends = true;
-      for (const PieceSide& side : sides) {
-        const double cosine = std::abs(glm::dot(side.normal, sides[0].normal));
-        bends = bends && cosine > 0.87;
-        if (std::abs(cosine - 0.87) < 1e-4) isUnsure.assign(isUnsure.size(), true);
-      }
-      if (bends || expected.size() > 64) expected.assign(expected.size(), 0);
-      for (size_t i = 0; i < expected.size(); ++i) {
-        const size_t e = lists.first[v] + i;
-        const uint32_t flags = scene.materials[scene.triangleMaterials[lists.ids[e]]].flags;
-        if ((flags & shared::kMaterialDoubleSided) == 0u) expected[i] |= (expected[i] & 21u) << 1 | ((expected[i] >> 1) & 21u);
-        unsure += isUnsure[i];
-        if (isUnsure[i]) continue;
-        ++checked;
-        apartCount += expected[i] != 0;
-        EXPECT_EQ(lists.apart[e], expected[i]) << "voxel " << v << ", triangle " << lists.ids[e];
+        // Surfaces all within 30 degrees of the first are one that bends; none of them is apart, but for backs of double-sided ones.
+        bool bends = true;
+        for (const PieceSide& side : sides) {
+          const double cosine = std::abs(glm::dot(side.normal, sides[0].normal));
+          bends = bends && cosine > 0.87;
+          if (std::abs(cosine - 0.87) < 1e-4) isUnsure.assign(isUnsure.size(), true);
+        }
+        if (bends || expected.size() > 64) expected.assign(expected.size(), 0);
+        for (size_t i = 0; i < expected.size(); ++i) {
+          const size_t e = lists.first[v] + i;
+          const uint32_t flags = scene.materials[scene.triangleMaterials[lists.ids[e]]].flags;
+          if ((flags & shared::kMaterialDoubleSided) == 0u) expected[i] |= (expected[i] & 21u) << 1 | ((expected[i] >> 1) & 21u);
+          unsure += isUnsure[i];
+          if (isUnsure[i]) continue;
+          ++checked;
+          apartCount[dominant ? 1 : 0] += expected[i] != 0;
+          EXPECT_EQ(lists.apart[e], expected[i]) << "voxel " << v << ", triangle " << lists.ids[e];
+        }
       }
     }
   }
-  EXPECT_GT(apartCount, 200u);
+  EXPECT_GT(apartCount[0], 200u);
+  EXPECT_GT(apartCount[1], 50u);
   EXPECT_GT(checked, 4 * unsure);
-  std::printf("%zu pieces checked, %zu of them apart; %zu too close to tell\n", checked, apartCount, unsure);
+  std::printf("%zu pieces checked, %zu and %zu of them apart; %zu too close to tell\n", checked, apartCount[0], apartCount[1], unsure);
 }
 
 // What surface makes of them: area of a face is that of the pieces that are part of it.
 TEST_F(TrianglesTest, FacesAreMadeOfThePiecesThatArePartOfThem) {
-  const scene::Scene scene = roomOfSkins(0.3f, 20, false);
-  Pipeline p = runOf(scene, 20);
-  const Lists lists = listsOf(p);
-  const auto mask = p.buffer<uint32_t>("faces.mask", p.count("voxels")), first = p.buffer<uint32_t>("faces.first", p.count("voxels"));
-  const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
-  size_t checked = 0, left = 0;
-  for (size_t v = 0; v < lists.voxels.size(); ++v) {
-    double area[6] = {}, whole[6] = {};
-    for (const PieceSide& side : sidesIn(scene, lists, v)) {
-      for (int k = 0; k < 3; ++k) {
-        const int f = side.faceOn(k);
-        const double weight = side.area * std::abs(side.normal[k]);
-        whole[f] += weight;
-        if ((lists.apart[side.entry] >> f & 1u) == 0u) area[f] += weight;
+  for (const bool dominant : {false, true}) {
+    const scene::Scene scene = roomOfSkins(0.3f, 20, false, dominant);
+    Pipeline p = runOf(scene, 20, dominant ? "dominant" : "projected");
+    const Lists lists = listsOf(p);
+    const auto mask = p.buffer<uint32_t>("faces.mask", p.count("voxels")), first = p.buffer<uint32_t>("faces.first", p.count("voxels"));
+    const auto faces = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+    size_t checked = 0, left = 0;
+    for (size_t v = 0; v < lists.voxels.size(); ++v) {
+      double area[6] = {}, whole[6] = {};
+      for (const PieceSide& side : sidesIn(scene, lists, v)) {
+        for (int k = 0; k < 3; ++k) {
+          const int f = side.faceOn(k);
+          const double weight = side.weightOn(k, dominant);
+          whole[f] += weight;
+          if ((lists.apart[side.entry] >> f & 1u) == 0u) area[f] += weight;
+        }
+      }
+      for (int f = 0; f < 6; ++f) {
+        if ((mask[v] >> f & 1u) == 0u) continue;
+        const shared::Face& face = faces[first[v] + std::popcount(mask[v] & ((1u << f) - 1))];
+        if (whole[f] > 0 && whole[f] < 1e-5) continue;  // scraps
+        const int of = whole[f] > 0 ? f : f ^ 1;        // fronts, or backs where it has none
+        EXPECT_NEAR(face.area, area[of], 1e-4 + 1e-4 * area[of]) << "voxel " << v << ", face " << f;
+        ++checked;
+        left += area[of] < 0.99 * whole[of];
       }
     }
-    for (int f = 0; f < 6; ++f) {
-      if ((mask[v] >> f & 1u) == 0u) continue;
-      const shared::Face& face = faces[first[v] + std::popcount(mask[v] & ((1u << f) - 1))];
-      if (whole[f] > 0 && whole[f] < 1e-5) continue;  // scraps
-      const int of = whole[f] > 0 ? f : f ^ 1;        // fronts, or backs where it has none
-      EXPECT_NEAR(face.area, area[of], 1e-4 + 1e-4 * area[of]) << "voxel " << v << ", face " << f;
-      ++checked;
-      left += area[of] < 0.99 * whole[of];
-    }
+    EXPECT_GT(left, dominant ? 20u : 100u);
+    std::printf("%zu faces, %zu of them without some of their surface\n", checked, left);
   }
-  EXPECT_GT(left, 100u);
-  std::printf("%zu faces, %zu of them without some of their surface\n", checked, left);
 }
 
 // What inject makes of them: no sun on voxel faces that are made of the inside alone.
 TEST_F(TrianglesTest, NoLightFallsOnFacesOfTheOtherSide) {
-  PipelineOptions options;
-  const scene::Scene scene = roomOfSkins(0.3f, 20, false);
-  options.graph = "clustered_voxel_pixels";
-  options.settings = {{"voxelize.resolution", "20"}, {"visibility.rays", "4"}};
-  options.outputs = {"voxelize.grid", "index.voxels", "triangles.first", "triangles.ids",
-                     "faces.mask",    "faces.first",  "surface.faces",   "inject.face_irradiance"};
-  Pipeline p(oracles::sharedDevice(), scene, options);
-  p.run();
-  const auto mask = p.buffer<uint32_t>("faces.mask", p.count("voxels")), first = p.buffer<uint32_t>("faces.first", p.count("voxels"));
-  const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance", p.count("faces"));
-  const Lists lists = listsOf(p);
-  size_t inner = 0, mixed = 0, lit = 0;
-  constexpr uint32_t kInner = 12;  // the first box's triangles
-  for (size_t v = 0; v < lists.voxels.size(); ++v) {
-    for (int f = 0; f < 6; ++f) {
-      if ((mask[v] >> f & 1u) == 0u) continue;
-      bool hasInner = false, hasOuter = false, leftOuter = false;
-      for (const PieceSide& side : sidesIn(scene, lists, v)) {
-        if (side.faceOn(f >> 1) != f || side.area <= 0) continue;
-        const bool isInner = lists.ids[side.entry] < kInner, isApart = (lists.apart[side.entry] >> f & 1u) != 0u;
-        hasInner = hasInner || (isInner && !isApart);
-        hasOuter = hasOuter || (!isInner && !isApart);
-        leftOuter = leftOuter || (!isInner && isApart);
+  for (const bool dominant : {false, true}) {
+    PipelineOptions options;
+    const scene::Scene scene = roomOfSkins(0.3f, 20, false, dominant);
+    options.graph = "clustered_voxel_pixels";
+    options.settings = {{"voxelize.resolution", "20"}, {"visibility.rays", "4"}, {"voxelize.faces", dominant ? "dominant" : "projected"}};
+    options.outputs = {"voxelize.grid", "index.voxels", "triangles.first", "triangles.ids",
+                       "faces.mask",    "faces.first",  "surface.faces",   "inject.face_irradiance"};
+    Pipeline p(oracles::sharedDevice(), scene, options);
+    p.run();
+    const auto mask = p.buffer<uint32_t>("faces.mask", p.count("voxels")), first = p.buffer<uint32_t>("faces.first", p.count("voxels"));
+    const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance", p.count("faces"));
+    const Lists lists = listsOf(p);
+    size_t inner = 0, mixed = 0, lit = 0;
+    constexpr uint32_t kInner = 12;  // the first box's triangles
+    for (size_t v = 0; v < lists.voxels.size(); ++v) {
+      for (int f = 0; f < 6; ++f) {
+        if ((mask[v] >> f & 1u) == 0u) continue;
+        bool hasInner = false, hasOuter = false, leftOuter = false;
+        for (const PieceSide& side : sidesIn(scene, lists, v)) {
+          if (side.faceOn(f >> 1) != f || side.weightOn(f >> 1, dominant) <= 0) continue;
+          const bool isInner = lists.ids[side.entry] < kInner, isApart = (lists.apart[side.entry] >> f & 1u) != 0u;
+          hasInner = hasInner || (isInner && !isApart);
+          hasOuter = hasOuter || (!isInner && !isApart);
+          leftOuter = leftOuter || (!isInner && isApart);
+        }
+        const glm::vec3 light = irradiance[first[v] + std::popcount(mask[v] & ((1u << f) - 1))];
+        lit += light.x > 0;
+        if (!hasInner || hasOuter) continue;
+        ++inner;
+        mixed += leftOuter;
+        EXPECT_EQ(light.x, 0.f) << "voxel " << v << ", face " << f << (leftOuter ? ", which a piece of the outside has left" : "");
       }
-      const glm::vec3 light = irradiance[first[v] + std::popcount(mask[v] & ((1u << f) - 1))];
-      lit += light.x > 0;
-      if (!hasInner || hasOuter) continue;
-      ++inner;
-      mixed += leftOuter;
-      EXPECT_EQ(light.x, 0.f) << "voxel " << v << ", face " << f << (leftOuter ? ", which a piece of the outside has left" : "");
     }
+    EXPECT_GT(mixed, dominant ? 10u : 50u);
+    EXPECT_GT(lit, 100u);
+    std::printf("%zu faces of the inside, %zu of them left by pieces of the outside; %zu faces lit\n", inner, mixed, lit);
   }
-  EXPECT_GT(mixed, 50u);
-  EXPECT_GT(lit, 100u);
-  std::printf("%zu faces of the inside, %zu of them left by pieces of the outside; %zu faces lit\n", inner, mixed, lit);
 }
 
 /// Where triangles.corners is not read (too many triangles, or a graph without the edge) rays load vertices.

@@ -24,6 +24,12 @@ TEST_F(VisibilityTest, RowsEqualTheCpuTraversal) {
   for (const uint32_t n : {16u, 32u}) checkRows(device(), buildVoxelStructures(oracle::roomSoup(), n), {.rays = 32});
 }
 
+TEST_F(VisibilityTest, RowsOfDominantFacesEqualTheCpuTraversal) {
+  checkRows(device(), buildVoxelStructures(oracle::roomSoup(), 20, true, true), {.rays = 32});
+  for (uint32_t seed = 1; seed <= 2; ++seed)
+    checkRows(device(), buildVoxelStructures(oracle::randomSoup(seed, 24), 17, seed == 1, true), {.rays = 32, .near = 4.f});
+}
+
 TEST_F(VisibilityTest, SlowRandomSoupsAndOneSidedSurfaces) {
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     const bool bothSides = seed % 2 == 0;

@@ -228,6 +228,33 @@ TEST_F(VoxelizeTest, SlowFacesFollowTheDefinition) {
   expectFaces(oracle::buildVoxelStructures(borderSoup(), 9), voxelize(borderSoup(), 9));
 }
 
+TEST_F(VoxelizeTest, SurfaceBelongsToTheFaceThatItLooksAlongTheMost) {
+  const VoxelRun::Settings dominant = {{"voxelize.faces", "dominant"}};
+  for (const uint32_t resolution : {9u, 24u}) {
+    SCOPED_TRACE(resolution);
+    Soup soup = randomSoup(11, 120);
+    for (SoupTriangle& triangle : soup) triangle.emission = triangle.albedo * 3.f;
+    const VoxelStructures got = voxelize(soup, resolution, "compute", dominant),
+                          expected = oracle::buildVoxelStructures(soup, resolution, true, true);
+    expectFaces(expected, got);
+    // All of the surface, once a side where it is double-sided: projections would add up to more.
+    double area = 0, faces = 0;
+    for (const double a : expected.voxelArea) area += 2 * a;
+    for (const shared::Face& face : got.faces) faces += face.area;
+    EXPECT_NEAR(faces, area, 1e-4 * area);
+    EXPECT_LT(static_cast<double>(got.faces.size()), 0.8 * static_cast<double>(voxelize(soup, resolution).faces.size()));
+    for (const std::string& method : otherMethods()) expectSame(got, voxelize(soup, resolution, method, dominant));
+  }
+  // At 45° to two axes the first gets it, however the normals were rounded.
+  Soup slope;
+  for (float x = 0.f; x < 5.f; x += 0.1f) oracle::addQuad(slope, {x, 0.3f * x, x}, {0.1f, 0.03f, 0.1f}, {-1.f, 0.f, 1.f});
+  const VoxelStructures s = voxelize(slope, 30, "compute", dominant);
+  for (const shared::Face& face : s.faces) EXPECT_EQ((face.key & 7u) >> 1, 1u);
+  Soup diagonal;
+  for (float x = 0.f; x < 5.f; x += 0.1f) oracle::addQuad(diagonal, {x, 0.f, x}, {0.1f, 0.f, 0.1f}, {0.f, 3.f, 0.f});
+  for (const shared::Face& face : voxelize(diagonal, 30, "compute", dominant).faces) EXPECT_EQ((face.key & 7u) >> 1, 0u);
+}
+
 TEST_F(VoxelizeTest, SidesFollowTheMaterial) {
   Soup soup = randomSoup(21, 100);
   for (size_t i = 0; i < soup.size(); ++i) soup[i].doubleSided = i % 2 == 0;

@@ -51,6 +51,9 @@ int firstAxis(const std::array<Axis, 3>& axes, const ivec3& v) {
 
 float dot(const vec3& a, const vec3& b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
 
+/// The face along axis k that a surface with normal n looks towards.
+uint32_t facing(const vec3& n, uint32_t k) { return 2 * k + (n[k] < 0.f ? 1u : 0u); }
+
 /// Faces of one voxel whose mean planes agree.
 struct OraclePlane {
   uint32_t faces = 0;    ///< bit f
@@ -115,7 +118,7 @@ struct Caster {
     const uint32_t voxel = s.voxelIndex(visit.voxel);
     if (voxel == shared::kNone) return kOracleMiss;
     const vec3 in = origin + visit.entry * direction, passage = (origin + visit.exit * direction) - in;
-    const auto facing = [&](uint32_t k) { return 2 * k + (direction[k] > 0.f ? 1u : 0u); };
+    const bool dominant = s.grid.dominant != 0;
     uint32_t bit = 1;
     bool found = false;
     float bestBefore = 0.f, bestWhole = 0.f;
@@ -132,7 +135,8 @@ struct Caster {
       uint32_t looks = 0;
       for (uint32_t k = 0; k < 3; ++k) {
         const bool member = (plane.faces & (3u << (2 * k))) != 0;  // a face of this direction, or its back
-        if (member && n[k] * direction[k] < 0.f) looks |= 1u << facing(k);
+        // What belongs to one face is seen by whoever is in front; a projection, by whoever the face looks at.
+        if (member && (dominant || n[k] * direction[k] < 0.f)) looks |= 1u << facing(n, k);
       }
       float before = 0.f, whole = 1.f;
       bool hit = looks != 0;
@@ -157,7 +161,10 @@ struct Caster {
     if (!found) return kOracleMiss;
     if (bestFaces == 0) return kOracleAbsorbed;
     float weight[3];
-    for (uint32_t k = 0; k < 3; ++k) weight[k] = ((bestFaces >> facing(k)) & 1u) != 0 ? std::fabs(bestNormal[k] * direction[k]) : 0.f;
+    for (uint32_t k = 0; k < 3; ++k) {
+      const float size = std::fabs(bestNormal[k] * (dominant ? 1.f : direction[k]));
+      weight[k] = ((bestFaces >> facing(bestNormal, k)) & 1u) != 0 ? size : 0.f;
+    }
     const float two = weight[0] + weight[1];
     const float total = two + weight[2];
     const float draw = static_cast<float>(random >> 8) * (1.0f / 16777216.0f) * total;
@@ -167,7 +174,7 @@ struct Caster {
     } else if (draw >= two && weight[2] > 0.f) {
       k = 2;
     }
-    return s.faceIndex(voxel, facing(k));
+    return s.faceIndex(voxel, facing(bestNormal, k));
   }
 };
 

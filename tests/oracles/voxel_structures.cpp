@@ -124,7 +124,7 @@ void addTriangle(const SoupTriangle& triangle, const VoxelStructures& s, FaceSum
     for (uint32_t f = 0; f < shared::kFaceCount; ++f) {
       const double cosine = glm::dot(geometric, glm::dvec3(shared::faceVector(f)));
       const bool front = cosine > 0.0;
-      const double weight = area * std::abs(cosine);
+      const double weight = area * faceShare(geometric, static_cast<int>(f / 2), s.grid.dominant != 0);
       if (weight < 0.5 * kFixedUnit) continue;
       FaceSum& sum = (front || triangle.doubleSided ? sums.fronts : sums.backs)[index << 3 | f];
       sum.area += weight;
@@ -295,7 +295,16 @@ void numberFaces(VoxelStructures& s) {
   s.first.back() = static_cast<uint32_t>(s.faces.size());
 }
 
-VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool bothSides) {
+double faceShare(const glm::dvec3& normal, int k, bool dominant) {
+  if (!dominant) return std::abs(normal[k]);
+  // Lengths within 1e-4 of each other are equal; the first of those counts.
+  int most = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (std::abs(normal[axis]) > 1.0001 * std::abs(normal[most])) most = axis;
+  return k == most ? 1.0 : 0.0;
+}
+
+VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool bothSides, bool dominant) {
   glm::vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
   for (const SoupTriangle& triangle : soup)
     for (const glm::vec3& p : triangle.position) {
@@ -305,6 +314,7 @@ VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool
   VoxelStructures s;
   s.grid = soup.empty() ? clustered_voxel::makeGrid(glm::vec3(0.f), glm::vec3(0.f), resolution)
                         : clustered_voxel::makeGrid(low, high, resolution);
+  s.grid.dominant = dominant ? 1 : 0;
   fillOccupancy(s, soup);
   indexVoxels(s);
   FaceSums sums;

@@ -57,8 +57,10 @@ struct VoxelStructures {
   glm::vec3 facePosition(uint32_t face) const { return shared::facePosition(faces[face], voxelCoordinate(faces[face].key >> 3)); }
 };
 
-/// `bothSides` as the parameter sides=both (true) or gltf (false).
-VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool bothSides = true);
+/// `bothSides` as the parameter sides=both (true) or gltf (false), `dominant` as faces=dominant (true) or projected (false).
+VoxelStructures buildVoxelStructures(const Soup& soup, uint32_t resolution, bool bothSides = true, bool dominant = false);
+/// How much of the area of surface with this unit normal the faces along axis k get.
+double faceShare(const glm::dvec3& normal, int k, bool dominant);
 
 /// Sets the bit of every voxel of `structures.grid` whose closed cube of half edge `half` (0.5: the voxel) a triangle overlaps.
 void fillOccupancy(VoxelStructures& structures, const Soup& soup, double half = 0.5);

@@ -18,6 +18,11 @@ Voxelize::Voxelize()
               params::choice("sides", &sides_, {"both", "gltf"},
                              "both: every surface reflects on both sides; gltf: single-sided materials on the front only",
                              params::Invalidates::Plan),
+              params::choice(
+                  "faces", &faces_, {"projected", "dominant"},
+                  "projected: surface belongs to all faces that it looks along, by its projected area (paper); dominant: to the one that "
+                  "it looks along the most, which is six tenths of the faces",
+                  params::Invalidates::Plan),
               TrianglePass::methodParam(&method_)}) {}
 
 /// Where even the shortest edge is many voxels long, more of them add detail to the light, but none to the shape.
@@ -37,6 +42,7 @@ std::string Voxelize::adviseResolution(const scene::Traits& traits) const {
 void Voxelize::declare(graph::Declaration& d) {
   grid_ = makeGridWithin(d.traits, resolution_, d.capabilities.maxStorageBufferRange, "voxelize.resolution");
   grid_.singleSided = sides_ == Sides::Gltf ? 1 : 0;
+  grid_.dominant = faces_ == Faces::Dominant ? 1 : 0;
   d.advise(adviseResolution(d.traits));
   TrianglePass::declare(d, method_);
   const uint32_t use = TrianglePass::useOf(method_) | graph::UseTransfer;

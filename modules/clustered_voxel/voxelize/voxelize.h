@@ -21,6 +21,7 @@ class Voxelize : public graph::Node {
  public:
   static constexpr std::string_view kType = "clustered_voxel.voxelize";
   enum class Sides : uint32_t { Both, Gltf };
+  enum class Faces : uint32_t { Projected, Dominant };
 
   Voxelize();
   std::string_view type() const override { return kType; }
@@ -34,6 +35,7 @@ class Voxelize : public graph::Node {
 
   uint32_t resolution_ = 128;
   Sides sides_ = Sides::Both;
+  Faces faces_ = Faces::Projected;
   TrianglePass::Method method_ = TrianglePass::Method::Auto;
   params::Table table_;
   shared::Grid grid_{};

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Flux sums → irradiance: E_dir = Φ_f / (a_s h²). A voxel shows no more than its own side: area beyond h² lies behind other surface (sheets
-// upon sheets, surfaces that are there twice), gets no light, and must not dilute what the front gets. Scraps of surface, smaller than a few shadow texels, catch one by chance: they get no more
+// Flux sums → irradiance: E_dir = Φ_f / (a_s h²). A voxel shows no more than its own side: area whose projection is beyond h² lies behind other surface
+// (sheets upon sheets, surfaces that are there twice), gets no light, and must not dilute what the front gets. Scraps of surface, smaller than a few shadow texels, catch one by chance: they get no more
 // than the lights can give, since the rare ray that is sent to such a face would be a spark.
 #include "shared/dispatch.glsl"
 #include "shared/light.glsl"
@@ -41,7 +41,9 @@ void main() {
   uint s = radivoxItemIndex();
   if (s >= faceCount) return;
   int exponent = int(viewTable[0]);
-  float area = min(faces[s].area, 1.0) * grid.h * grid.h;
+  // Of surface that belongs to one face, as much as projects to the voxel's side.
+  float most = grid.dominant != 0u ? 1.0 / max(abs(decodeNormal(faces[s].normal)[(faces[s].key & 7u) >> 1]), 0.57) : 1.0;
+  float area = min(faces[s].area, most) * grid.h * grid.h;
   vec3 sum;
   for (uint c = 0; c < 3; ++c)
     sum[c] = ldexp(float(fluxHigh[3 * s + c]), 32 - exponent) + ldexp(float(irradiance[3 * s + c]), -exponent);

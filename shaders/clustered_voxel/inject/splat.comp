@@ -12,6 +12,7 @@
 #define RADIVOX_BIND_RANK 8
 #define RADIVOX_BIND_FACE_MASK 9
 #define RADIVOX_BIND_FIRST_FACE 10
+#include "shared/face_shares.h"
 #include "shared/voxel_lookup.glsl"
 
 layout(local_size_x = 64) in;
@@ -80,31 +81,36 @@ void addFlux(uint word, uvec2 value) {
   if (high != 0u) atomicAdd(fluxHigh[word], high);
 }
 
-// The faces of the voxel at `coord` that surface with normal n is part of; kNone: none, or one that does not show it. The weight that found a face.
-// Light on a back goes where the face is made of backs: a face that shows fronts does not show it, and beside the edge of a thin-walled room those
-// fronts may lie inside, the lit back outside.
+bool isDominant() { return grid.dominant != 0u; }
+
+// How much of the power on surface with normal n each of its faces gets. Where it belongs to one, that is the first, whatever its axis.
+vec3 sharesOf(vec3 n) { return isDominant() ? vec3(1.0, 0.0, 0.0) : abs(n); }
+
+// The faces of the voxel at `coord` that surface with normal n is part of, as sharesOf() has them; kNone: none, or one that does not show it. Returns
+// what of it found a face. Light on a back goes where the face is made of backs: a face that shows fronts does not show it, and beside the edge of a
+// thin-walled room those fronts may lie inside, the lit back outside.
 float facesAt(ivec3 coord, uint triangle, vec3 n, bool isBack, out uvec3 found) {
   found = uvec3(kNone);
   uint voxel = voxelIndex(coord);
   if (voxel == kNone) return 0.0;
   uint apart = kApart ? apartIn(voxel, triangle) : 0u;
+  vec3 shares = faceShares(n, isDominant());
   float weight = 0.0;
   for (uint k = 0; k < 3; ++k) {
     uint f = 2 * k + (n[k] < 0.0 ? 1u : 0u);
     uint face = faceIndex(voxel, f);
-    if (face == kNone || n[k] == 0.0) continue;
-    weight += abs(n[k]) * abs(n[k]);
+    if (face == kNone || shares[k] == 0.0) continue;
+    weight += shares[k] * shares[k];
     if (((apart >> f) & 1u) != 0u || (isBack && (faces[face].position & kMadeOfBacks) == 0u)) continue;
-    found[k] = face;
+    found[isDominant() ? 0u : k] = face;
   }
   return weight;
 }
 
-// Adds power · max(0, n·e_f).
-void deposit(uvec3 found, vec3 n, vec3 power, int exponent) {
+void deposit(uvec3 found, vec3 shares, vec3 power, int exponent) {
   for (uint k = 0; k < 3; ++k) {
     if (found[k] == kNone) continue;
-    for (uint c = 0; c < 3; ++c) addFlux(found[k] * 3 + c, toUnits(power[c] * abs(n[k]), exponent));
+    for (uint c = 0; c < 3; ++c) addFlux(found[k] * 3 + c, toUnits(power[c] * shares[k], exponent));
   }
 }
 
@@ -191,9 +197,10 @@ void main() {
       sumFront = isFront;
       for (uint w = 0; w < 9; ++w) sums[w] = uvec2(0u);
     }
-    for (uint k = 0; k < 3; ++k) {
+    vec3 shares = sharesOf(n);
+    for (uint k = 0; k < (isDominant() ? 1u : 3u); ++k) {
       for (uint c = 0; c < 3; ++c) {
-        uvec2 units = toUnits(power[c] * abs(n[k]), exponent);
+        uvec2 units = toUnits(power[c] * shares[k], exponent);
         uint sum = sums[3 * k + c].x + units.x;
         sums[3 * k + c] = uvec2(sum, sums[3 * k + c].y + units.y + (sum < units.x ? 1u : 0u));
       }
@@ -208,7 +215,7 @@ void main() {
       if (min(inside[k], 1.0 - inside[k]) >= 0.01) continue;
       uvec3 found;
       placed = facesAt(coord + step, triangle, n, isBack, found) > 0.5;
-      deposit(found, n, power, exponent);
+      deposit(found, shares, power, exponent);
     }
     lost += placed ? 0u : 1u;
   }

@@ -60,14 +60,16 @@ vec3 unitNormal(uint id) {
   return triangleNormal(id);
 }
 
-// What a listed triangle's piece gives to face f of its voxel: area · |n·e_f| if its front looks that way (`backs`: its back) and is part of the face; n:
+// What a listed triangle's piece gives to face f of its voxel: its share of the area if its front looks that way (`backs`: its back) and is part of the face; n:
 // that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
   uint listed = triangleIds(entry);
   vec3 front = unitNormal(listedTriangle(listed));
   vec3 unit = backs ? -front : front;
   n = unit;
-  precise float weight = max((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1], 0.0) * uintBitsToFloat(texelFetch(pieceTexels, int(2u * entry + 1u)).x);
+  bool looks = ((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1]) > 0.0;
+  precise float share = faceShares(unit, castDominant)[f >> 1] * uintBitsToFloat(texelFetch(pieceTexels, int(2u * entry + 1u)).x);
+  float weight = looks ? share : 0.0;
   return ((listedApart(listed) >> f) & 1u) != 0u ? 0.0 : weight;
 }
 

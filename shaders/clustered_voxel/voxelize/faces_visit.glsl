@@ -14,8 +14,9 @@ void visitVoxel(Triangle t, ivec3 turned) {
   if (!(surface.coverage > 0.0)) return;
   bool back = reflectsOnBack(material);
   uint mask = 0u;
+  vec3 weights = weightsOf(t, piece, surface);
   for (uint k = 0u; k < 3u; ++k) {
-    if (toFixed(weightOf(piece, surface, k)) == uvec2(0u)) continue;
+    if (toFixed(weights[k]) == uvec2(0u)) continue;
     uint pair = 2u * worldAxis(t, k);
     bool negative = piece.normal[k] < 0.0;
     mask |= back ? 3u << pair : (negative ? 2u : 1u) << pair;

@@ -3,6 +3,7 @@
 #ifndef RADIVOX_VOXELIZE_MATERIAL_GLSL
 #define RADIVOX_VOXELIZE_MATERIAL_GLSL
 #include "clustered_voxel/voxelize/piece.glsl"
+#include "shared/face_shares.h"
 #include "shared/texture.glsl"
 
 layout(constant_id = 0) const bool kTextured = false;  // some material has a texture
@@ -113,12 +114,13 @@ Surface surfaceOf(Triangle t, ivec3 voxel, Piece piece, uint material) {
 // Does the side of the surface that looks along −normal reflect?
 bool reflectsOnBack(uint material) { return grid.singleSided == 0u || (materials[material].flags & kMaterialDoubleSided) != 0u; }
 
-// What the piece adds to the face pair of turned axis k: area · |n·e|, h². Faces exist iff its fixed-point value is above 0.
-float weightOf(Piece piece, Surface surface, uint k) {
-  precise float weight = piece.area * surface.coverage * abs(piece.normal[k]);
-  return weight;
-}
-
 uint worldAxis(Triangle t, uint k) { return (t.axis + 1u + k) % 3u; }
+
+// What the piece adds to the face pairs of the turned axes: its shares of the area, h². Faces exist iff the fixed-point value is above 0.
+vec3 weightsOf(Triangle t, Piece piece, Surface surface) {
+  vec3 shares = faceShares(turnBack(piece.normal, t.axis), grid.dominant != 0u);
+  precise vec3 weights = piece.area * surface.coverage * vec3(shares[worldAxis(t, 0u)], shares[worldAxis(t, 1u)], shares[worldAxis(t, 2u)]);
+  return weights;
+}
 
 #endif

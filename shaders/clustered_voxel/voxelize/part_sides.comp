@@ -8,6 +8,7 @@
 // bound the same space each reach in front of the other (a corner of a room), or neither does (a corner of a block); where only one does, something
 // solid lies between.
 #include "shared/dispatch.glsl"
+#include "shared/face_shares.h"
 #include "shared/listed_triangle.h"
 #include "shared/scene.h"
 #include "shared/voxel_codec.h"
@@ -110,6 +111,7 @@ void main() {
   bool bends = true;
   for (uint e = begin + 1u; e < end && bends; ++e) bends = abs(triangleDot(triangleNormal(triangleIds[e]), first)) > kBendCosine;
   if (bends) return;
+  bool dominant = grid.dominant != 0u;
   vec3 voxelCorner = vec3(unpackVoxel(voxels[voxel]));
   float most[kFaceCount];
   uint leader[kFaceCount];
@@ -127,9 +129,10 @@ void main() {
     uint sideCount = (flags & kMaterialDoubleSided) != 0u ? 2u : 1u;
     for (uint s = 0u; s < sideCount; ++s) {
       vec3 n = s == 0u ? front : -front;
+      vec3 shares = faceShares(n, dominant);
       for (uint k = 0u; k < 3u; ++k) {
         uint f = faceTowards(n, k);
-        precise float weight = abs(n[k]) * uintBitsToFloat(piece.y);
+        precise float weight = shares[k] * uintBitsToFloat(piece.y);
         if (weight <= most[f]) continue;
         most[f] = weight;
         leader[f] = e;
@@ -147,10 +150,11 @@ void main() {
     for (uint s = 0u; s < (isDouble ? 2u : 1u); ++s) {
       vec3 n = s == 0u ? front : -front;
       uint leaves = 0u;
-      bool stays = false;  // a piece that no face would keep stays in all
+      bool stays = dominant;  // of several faces, a piece that none would keep stays in all
+      vec3 shares = faceShares(n, dominant);
       for (uint k = 0u; k < 3u; ++k) {
         uint f = faceTowards(n, k);
-        if (n[k] == 0.0 || leader[f] == kNone) continue;
+        if (shares[k] == 0.0 || leader[f] == kNone) continue;
         bool leavesIt = leader[f] != e && isApart(sides[f], Side(id, n, middle), voxelCorner);
         leaves |= leavesIt ? 1u << f : 0u;
         stays = stays || !leavesIt;

@@ -80,10 +80,11 @@ void visitVoxel(Triangle t, ivec3 turned) {
   bool doubleSided = (materials[material].flags & kMaterialDoubleSided) != 0u;
   uint apart = kApart ? apartIn(index, t.id) : 0u;
   // One loop, so that the additions are compiled once: k = s / 2; even s add to the front.
+  vec3 weights = weightsOf(t, piece, surface);
   for (uint s = 0u; s < 6u; ++s) {
     uint k = s >> 1;
     bool isBack = (s & 1u) != 0u;
-    float weight = weightOf(piece, surface, k);
+    float weight = weights[k];
     if (toFixed(weight) == uvec2(0u) || (isBack && !doubleSided)) continue;
     uint front = 2u * worldAxis(t, k) + (piece.normal[k] < 0.0 ? 1u : 0u);
     uint frontFace = first + uint(bitCount(mask & ((1u << front) - 1u)));
