@@ -10,6 +10,7 @@ Plan compile(const Graph& graph, const CompileInput& input) {
   detail::Draft draft = detail::declareAll(graph, input);
   detail::connectPorts(draft);
   detail::cull(draft);
+  detail::settleFrees(draft);
   detail::checkLive(draft);
   if (!draft.errors.empty()) {
     std::string message = draft.errors.front();
@@ -80,6 +81,9 @@ Draft declareAll(const Graph& graph, const CompileInput& input) {
       seen.push_back(port.name);
       if (port.growable && !declaration.isHostPaced()) {
         draft.errors.push_back(entry.name + "." + port.name + " is growable, but " + entry.name + " is not host-paced");
+      }
+      if (port.frees && (port.access != Access::Read || !declaration.isHostPaced())) {
+        draft.errors.push_back(entry.name + "." + port.name + " frees what it reads, but is no input of a host-paced node");
       }
     }
     for (const auto& count : declaration.publishedCounts) {

@@ -160,4 +160,30 @@ void cull(Draft& draft) {
   }
 }
 
+void settleFrees(Draft& draft) {
+  const auto same = [](const Source& a, const Source& b) { return a.node == b.node && a.port == b.port; };
+  const auto isSoleReader = [&](uint32_t n, uint32_t p) {
+    const Source& source = draft.sources[n][p];
+    if (source.node == kNone) return false;  // the host's own
+    const std::string name = draft.sourceName(source);
+    const std::vector<Endpoint>& outputs = draft.graph.outputs();
+    if (std::any_of(outputs.begin(), outputs.end(), [&](const Endpoint& output) { return output.print() == name; })) return false;
+    for (uint32_t m = 0; m < draft.declarations.size(); ++m) {
+      for (uint32_t q = 0; q < draft.declarations[m].ports.size(); ++q) {
+        const bool isOther = m != n || q != p;
+        if (isOther && draft.isLive(m) && draft.reads(m, q) && same(source, draft.sources[m][q])) return false;
+      }
+    }
+    return true;
+  };
+  for (uint32_t n = 0; n < draft.declarations.size(); ++n) {
+    for (uint32_t p = 0; p < draft.declarations[n].ports.size(); ++p) {
+      Port& port = draft.declarations[n].ports[p];
+      if (!port.frees) continue;
+      port.frees = !draft.input.keepsAll && draft.isLive(n) && draft.reads(n, p) && isSoleReader(n, p);
+      if (port.frees) port.access = Access::Modify;
+    }
+  }
+}
+
 }  // namespace radivox::graph::detail

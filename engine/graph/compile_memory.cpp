@@ -17,7 +17,7 @@ class Layout {
 
   PlannedPort plan(uint32_t node, uint32_t p, uint32_t position) {
     const Port& port = draft_.declarations[node].ports[p];
-    PlannedPort planned{port.name, kNoResource, 0, port.access, port.use, port.meaning};
+    PlannedPort planned{port.name, kNoResource, 0, port.access, port.use, port.meaning, port.frees};
     if (isInput(port)) {
       if (!draft_.reads(node, p)) return planned;
       const Source& source = draft_.sources[node][p];

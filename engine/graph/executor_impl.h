@@ -127,6 +127,8 @@ struct Executor::Impl {
   void allocateScratch(const std::vector<uint32_t>& batchSteps);
   void freeScratch(const std::vector<uint32_t>& batchSteps);
   void releaseSlot(uint32_t slot);
+  /// What the step was the only one to read (Port::frees).
+  void freeRead(uint32_t step);
   bool isAllocated(uint32_t step) const;
   void checkBuffer(const std::string& name, uint64_t bytes, bool bound) const;
   gpu::ImageInfo imageInfo(const std::string& name, const Shape& shape) const;

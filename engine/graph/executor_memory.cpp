@@ -181,6 +181,19 @@ void Executor::Impl::freeScratch(const std::vector<uint32_t>& batchSteps) {
   }
 }
 
+void Executor::Impl::freeRead(uint32_t step) {
+  for (const PlannedPort& port : plan.steps[step].ports) {
+    if (!port.frees || port.resource == kNoResource) continue;
+    ResourceState& state = resources[port.resource];
+    state.buffer = gpu::Buffer();
+    state.image = gpu::Image();
+    state.grown.clear();
+    state.bytes = 0;
+    state.allocated = false;
+    state.access = {};
+  }
+}
+
 bool Executor::Impl::isAllocated(uint32_t step) const {
   const auto& ports = plan.steps[step].ports;
   return std::all_of(ports.begin(), ports.end(), [&](const PlannedPort& port) {

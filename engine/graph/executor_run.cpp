@@ -238,6 +238,7 @@ void Executor::Impl::runHostPaced(uint32_t step) {
     }
     endStep(step);
     readCounts(members);
+    freeRead(step);
   } catch (...) {
     vkResetCommandPool(device.handle(), commandPool, 0);
     abandon(members);

@@ -39,6 +39,7 @@ struct PlannedPort {
   Access access = Access::Read;
   uint32_t use = 0;
   std::string meaning;
+  bool frees = false;  ///< Modify: the memory is freed once the step has run
 };
 
 /// Before a step: `resource` was touched with `fromUse` (written or read), is now touched with `toUse`.
@@ -89,7 +90,8 @@ struct CompileInput {
   const scene::Request& request;
   const gpu::Capabilities& capabilities;  ///< default-constructed when there is no device
   std::vector<Import> imports;
-  Counts knownCounts;  ///< "triangles", "vertices", "width", "height", …
+  Counts knownCounts;     ///< "triangles", "vertices", "width", "height", …
+  bool keepsAll = false;  ///< nothing is freed between steps (Port::frees): for hosts that look into what nodes hand on
 };
 
 /// Throws BadInput with every error of the graph in one message (unknown ports, wrong directions, kinds that differ, cycles, two

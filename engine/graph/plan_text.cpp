@@ -144,7 +144,7 @@ std::string printPort(const Plan& plan, const PlannedPort& port, const Counts& c
   const PlannedResource& resource = plan.resources[port.resource];
   if (port.access == Access::Read || port.access == Access::Modify) {
     text += printSource(plan, port);
-    if (port.access == Access::Modify) text += " → v" + std::to_string(port.version);
+    if (port.access == Access::Modify) text += port.frees ? ", then freed" : " → v" + std::to_string(port.version);
     return text + "\n";
   }
   text += resource.growable ? ": grows" : ": " + resource.shape.print() + " = " + printBytes(shapeBytes(resource.shape, counts));

@@ -82,7 +82,12 @@ void Method::compile(const scene::Scene& scene) {
   gpuScene_->setCamera(view_.camera, view_.width, view_.height);
   traits_ = scene::traitsFor(scene, job_->lights);
   const scene::Request& request = job_->request;
-  graph::Plan plan = graph::compile(job_->graph, {traits_, request, device_.capabilities(), gpuScene_->imports(), gpuScene_->counts()});
+  graph::Plan plan = graph::compile(job_->graph, {.traits = traits_,
+                                                  .request = request,
+                                                  .capabilities = device_.capabilities(),
+                                                  .imports = gpuScene_->imports(),
+                                                  .knownCounts = gpuScene_->counts(),
+                                                  .keepsAll = true});  // overlays look at what nodes hand on
   executor_ = std::make_unique<graph::Executor>(device_, job_->graph, std::move(plan), traits_, request, gpuScene_->counts());
   gpuScene_->importInto(*executor_);
 }

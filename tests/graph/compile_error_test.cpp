@@ -296,6 +296,41 @@ TEST(ForbiddenGraph, CountFromWhatIsNoOutput) {
             "b publishes the count things from \"\", which is no output of it");
 }
 
+TEST(ForbiddenGraph, FreeingWithoutHostSteps) {
+  Graph g;
+  addFake(g, "a", [](Declaration& d) { d.write("out", kWords, "words"); });
+  addFake(g, "b", [](Declaration& d) {
+    d.read("in", "words").frees = true;
+    d.write("out", kWords, "words").frees = true;
+  });
+  g.connect("a.out", "b.in");
+  g.output("b.out");
+  EXPECT_EQ(PlanInput().error(g),
+            "graph: b.in frees what it reads, but is no input of a host-paced node; "
+            "b.out frees what it reads, but is no input of a host-paced node");
+}
+
+// A host that looks at what nodes hand on asks that nothing be freed.
+TEST(Plan, KeepsAllWhereTheHostAsks) {
+  Graph g;
+  addFake(g, "a", [](Declaration& d) { d.write("out", kWords, "words"); });
+  addFake(g, "b", [](Declaration& d) {
+    d.read("in", "words").frees = true;
+    d.write("out", kWords, "words");
+    d.hostPaced();
+  });
+  g.connect("a.out", "b.in");
+  g.output("b.out");
+  PlanInput input;
+  for (const bool keepsAll : {false, true}) {
+    const graph::Plan plan = graph::compile(g, {input.traits, input.request, input.capabilities, {}, {}, keepsAll});
+    const graph::PlannedPort* port = plan.findPort("b", "in");
+    ASSERT_NE(port, nullptr);
+    EXPECT_EQ(port->frees, !keepsAll);
+    EXPECT_EQ(port->access, keepsAll ? graph::Access::Read : graph::Access::Modify);
+  }
+}
+
 TEST(ForbiddenGraph, GrowingWithoutHostSteps) {
   Graph g;
   addFake(g, "a", [](Declaration& d) { d.write("entries", kWords, "words").growable = true; });

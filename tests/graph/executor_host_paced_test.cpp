@@ -135,6 +135,75 @@ TEST_F(HostPacedTest, GrownBuffersStayUntilTheNextRun) {
   EXPECT_EQ(bytes, 48u);
 }
 
+/// Adds `value` to what it reads, which it would free.
+FakeNode& addFreeing(graph::Graph& graph, const std::string& name, const std::shared_ptr<AddPipeline>& add) {
+  FakeNode& node = addFake(graph, name, [](Declaration& d) {
+    d.read("in", "words").frees = true;
+    d.write("out", Shape::buffer(4, 4), "words");
+    d.hostPaced();
+  });
+  node.onPrepare = [add](graph::PrepareContext& c) { add->prepare(c.device()); };
+  node.onRecord = [add, &node](RecordContext& c) { add->dispatch(c.commands(), c.buffer("in"), c.buffer("out"), 4, node.value); };
+  return node;
+}
+
+uint64_t bytesOf(NodeHarness& h, const std::string& resource) {
+  for (const auto& r : h.executor().stats().resources)
+    if (r.name == resource) return r.bytes;
+  return 0;
+}
+
+TEST_F(HostPacedTest, WhatOnlyOneNodeReadsItMayFree) {
+  NodeHarness h(device());
+  addFill(h.graph(), "fill");
+  addFreeing(h.graph(), "frees", std::make_shared<AddPipeline>());
+  h.connect("fill.out", "frees.in");
+  h.output("frees.out");
+  h.set("fill.value", "7");
+  h.set("frees.value", "1");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 8));
+  EXPECT_EQ(bytesOf(h, "fill.out"), 0u);
+  EXPECT_EQ(h.executor().findBuffer("fill.out"), nullptr);
+  h.run();
+  EXPECT_EQ(h.runCount("fill"), 1u) << "nothing changed";
+  h.set("frees.value", "2");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 9));
+  EXPECT_EQ(h.runCount("fill"), 2u) << "what was freed is made again";
+  h.set("fill.value", "10");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 12));
+  EXPECT_EQ(bytesOf(h, "fill.out"), 0u);
+}
+
+TEST_F(HostPacedTest, WhatOthersReadIsNotFreed) {
+  for (const std::string other : {"output", "reader", "rival"}) {
+    NodeHarness h(device());
+    addFill(h.graph(), "fill");
+    const auto add = std::make_shared<AddPipeline>();
+    addFreeing(h.graph(), "frees", add);
+    h.connect("fill.out", "frees.in");
+    h.output("frees.out");
+    if (other == "output") h.output("fill.out");
+    if (other == "reader") addAdd(h.graph(), "other");
+    if (other == "rival") addFreeing(h.graph(), "other", add);
+    if (other != "output") {
+      h.connect("fill.out", "other.in");
+      h.output("other.out");
+    }
+    h.set("fill.value", "7");
+    h.set("frees.value", "1");
+    h.run();
+    EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 8)) << other;
+    h.set("frees.value", "2");
+    h.run();
+    EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 9)) << other;
+    EXPECT_EQ(h.runCount("fill"), 1u) << other;
+    EXPECT_GT(bytesOf(h, "fill.out"), 0u) << other;
+  }
+}
+
 TEST_F(HostPacedTest, GrowingBeyondTheDeviceNamesThePort) {
   NodeHarness h(device());
   FakeNode& grow = addFake(h.graph(), "grow", [](Declaration& d) {

@@ -26,9 +26,10 @@ Transfer::Transfer()
                              params::Invalidates::Plan)}) {}
 
 void Transfer::declare(graph::Declaration& d) {
-  d.read("visibility_row_start", "first bit of each face's row in its chunk");
-  d.read("visibility_entries", "rows of the faces, by chunk");
-  d.read("chunk_table", "device address of each chunk");
+  // Rows are most of what rays leave behind. Where neither the last bounce nor the sky goes to faces, this is the last to read them.
+  d.read("visibility_row_start", "first bit of each face's row in its chunk").frees = true;
+  d.read("visibility_entries", "rows of the faces, by chunk").frees = true;
+  d.read("chunk_table", "device address of each chunk").frees = true;
   d.read("faces", "Face");
   d.read("labels", "cluster id of each face");
   d.read("clusters", "Cluster");
