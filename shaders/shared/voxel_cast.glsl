@@ -191,6 +191,7 @@ struct PlaneHit {
   uint voxel;
   uint mask;    // faces of the voxel
   uint faces;   // those that the ray may hit, and << 8 the directions from which it sees the plane; 0: it meets none
+  bool behind;  // no surface shows its front on the side that the ray sees
   vec3 normal;  // of the plane, on the side that the ray sees; |x| + |y| + |z| = 1
 };
 
@@ -215,6 +216,7 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint voxel, uint ex
   float bestWhole = 1.0;
   vec3 bestNormal = vec3(0.0);
   uint bestFaces = 0u;
+  bool bestBehind = false;
   bool more = exists && mask != 0u;
   for (uint i = 0u; more; ++i) {
     vec3 n = planeNormal(plane.x);
@@ -260,11 +262,12 @@ PlaneHit castPlane(TraversalRay ray, TraversalCursor cursor, uint voxel, uint ex
       bestNormal = n;
       uint seen_ = (looks & members) != 0u ? looks & members : looks & mask;
       bestFaces = looks << 8 | seen_;
+      bestBehind = (looks & members) == 0u;
     }
     more = (plane.y & kPlaneMore) != 0u;
     if (more) plane = nextPlane(voxel, i);
   }
-  return PlaneHit(voxel, mask, bestFaces, bestNormal);
+  return PlaneHit(voxel, mask, bestFaces, bestBehind, bestNormal);
 }
 
 // The face that a ray hits of the plane that it meets; kHitNothing: it meets none; kHitBack. `random` is uniform.

@@ -65,18 +65,34 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
     PlaneHit crossed = castPlane(way, last, lastVoxel, 0u, inFront);
     if (crossed.faces != 0u) inFront = 0x3fu;
   }
-  PlaneHit plane = PlaneHit(0u, 0u, 0u, vec3(0.0));
-  while (!met) {
-    uint crossed;
-    if (castMarch(way, cursor, true, crossed)) {
-      inFront = 0u;
+  PlaneHit plane = PlaneHit(0u, 0u, 0u, false, vec3(0.0));
+  bool goesOn = !met;
+  while (goesOn) {
+    while (true) {
+      uint crossed;
+      if (castMarch(way, cursor, true, crossed)) {
+        inFront = 0u;
+        atStart = false;
+      }
+      plane.faces = 0u;
+      if (crossed == kNone) break;
+      plane = castPlane(way, cursor, crossed, atStart ? excluded : 0u, inFront);
+      if (plane.faces != 0u) break;
+      traversalStep(way, cursor);
       atStart = false;
     }
-    if (crossed == kNone) break;
-    plane = castPlane(way, cursor, crossed, atStart ? excluded : 0u, inFront);
-    if (plane.faces != 0u) break;
-    traversalStep(way, cursor);
-    atStart = false;
+    // Planes reach beyond the edges of their surface, and what is met there from behind is seldom a back: the triangles tell.
+    bool doubtful = plane.faces != 0u && plane.behind && nearDistance > 0.0;
+    uint first = doubtful ? triangleFirst(plane.voxel) : 0u, end = doubtful ? triangleFirst(plane.voxel + 1u) : 0u;
+    goesOn = first != end;
+    if (goesOn) {
+      met = nearestTriangle(way, cursor, first, end, own, lift, time, normal, listed);
+      voxel = plane.voxel;
+      goesOn = !met;
+      plane.faces = 0u;
+      if (goesOn) traversalStep(way, cursor);
+      atStart = false;
+    }
   }
   result.face = faceOfPlane(way, plane, random);
   result.time = cursor.time;

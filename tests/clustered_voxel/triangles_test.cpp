@@ -7,7 +7,9 @@
 #include <random>
 
 #include "shaders/shared/listed_triangle.h"
+#include "shaders/shared/visibility_row.h"
 #include "shaders/shared/voxel_codec.h"
+#include "tests/clustered_voxel/visibility_run.h"
 #include "tests/clustered_voxel/voxel_run.h"
 #include "tests/oracles/gpu_fixture.h"
 #include "tests/oracles/pipeline.h"
@@ -366,6 +368,55 @@ TEST_F(TrianglesTest, NoLightFallsOnFacesOfTheOtherSide) {
     EXPECT_GT(mixed, dominant ? 10u : 50u);
     EXPECT_GT(lit, 100u);
     std::printf("%zu faces of the inside, %zu of them left by pieces of the outside; %zu faces lit\n", inner, mixed, lit);
+  }
+}
+
+// Mean planes reach beyond the edges of what they stand for. In a room of closed bodies nobody sees a back; where planes alone stop rays, some do.
+TEST_F(TrianglesTest, WhatIsMetFromBehindIsABackOnlyIfItsTrianglesSaySo) {
+  oracle::Soup soup;
+  oracle::addBox(soup, glm::vec3(0.f), glm::vec3(4.f), glm::vec3(0.5f), true);
+  oracle::addSphere(soup, glm::vec3(1.2f), 0.7f, 6);
+  oracle::addSphere(soup, glm::vec3(2.9f, 1.1f, 2.6f), 0.5f, 5);
+  for (oracle::SoupTriangle& t : soup) t.doubleSided = false;
+  scene::Scene scene = oracle::sceneOf(soup);
+  scene::PunctualLight lamp;
+  lamp.type = shared::kLightPoint;
+  lamp.position = glm::vec3(2.f, 3.f, 2.f);
+  lamp.intensity = glm::vec3(10.f);
+  scene.lights = {lamp};
+  for (const char* faces : {"projected", "dominant"}) {
+    double share[2] = {};  // of the rays of fronts, those that end on backs
+    for (const bool hasTriangles : {false, true}) {
+      PipelineOptions options;
+      options.graph = "clustered_voxel_pixels";
+      options.settings = {{"voxelize.resolution", "40"},
+                          {"voxelize.faces", faces},
+                          {"visibility.near", "4096"},
+                          {"visibility.triangles", hasTriangles ? "2" : "0"}};
+      options.outputs = {"visibility.row_start", "visibility.entries", "surface.faces"};
+      Pipeline p(oracles::sharedDevice(), scene, options);
+      p.run();
+      const auto all = p.buffer<shared::Face>("surface.faces", p.count("faces"));
+      const auto starts = p.buffer<uint32_t>("visibility.row_start");
+      const auto clusterCount = static_cast<uint32_t>(p.count("clusters")), idCount = clusterCount + static_cast<uint32_t>(all.size());
+      const auto isBack = [&](uint32_t face) { return (all[face].position & shared::kMadeOfBacks) != 0; };
+      std::vector<std::vector<uint32_t>> chunks;
+      for (const gpu::Buffer* chunk : p.executor->findGrown("visibility.entries"))
+        chunks.push_back(gpu::downloadAs<uint32_t>(oracles::sharedDevice(), *chunk, chunk->bytes() / 4));
+      double rays = 0, backs = 0;
+      for (uint32_t s = 0; s < all.size(); ++s) {
+        if (isBack(s)) continue;
+        const uint32_t chunk = s / shared::kRowsPerChunk, slot = s + chunk;
+        shared::forEachRowEntry(chunks.at(chunk).data(), starts[slot], starts[slot + 1], idCount, [&](uint32_t id, uint32_t n) {
+          rays += n;
+          backs += id >= clusterCount && id < idCount && isBack(id - clusterCount) ? n : 0;
+        });
+      }
+      share[hasTriangles ? 1 : 0] = backs / rays;
+    }
+    std::printf("%s: %.2e of the rays end on backs, %.2e where planes alone stop them\n", faces, share[1], share[0]);
+    EXPECT_GT(share[0], 1e-3) << "the scene tests nothing";
+    EXPECT_LT(share[1], 2e-4);
   }
 }
 

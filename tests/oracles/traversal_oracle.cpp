@@ -56,7 +56,7 @@ uint32_t facing(const vec3& n, uint32_t k) { return 2 * k + (n[k] < 0.f ? 1u : 0
 
 /// Faces of one voxel whose mean planes agree.
 struct OraclePlane {
-  uint32_t faces = 0;    ///< bit f
+  uint32_t faces = 0;    ///< bit f: those that show their fronts
   uint32_t largest = 0;  ///< face index
   /// The normal that rays test: of the largest face, in 10 bits a coordinate, |x| + |y| + |z| = 1.
   vec3 normal(const VoxelStructures& s) const { return shared::planeNormal(shared::planeNormalCode(s.faces[largest].normal)); }
@@ -87,6 +87,11 @@ std::vector<OraclePlane> planesOf(const VoxelStructures& s, uint32_t voxel) {
       if (f == founder || agrees) plane.faces |= 1u << f;
     }
     left &= ~plane.faces;
+    // What is made of backs lies on the plane, but shows no surface there.
+    for (uint32_t f = 0; f < 6; ++f) {
+      const bool isMember = ((plane.faces >> f) & 1u) != 0;
+      if (isMember && (s.faces[s.faceIndex(voxel, f)].position & shared::kMadeOfBacks) != 0) plane.faces &= ~(1u << f);
+    }
     planes.push_back(plane);
   }
   return planes;

@@ -87,7 +87,7 @@ class Moving : public oracles::GpuTest {
     EXPECT_EQ(first, resultFromScratch(s, settings, graph));
     double share = 0;
     const std::vector<glm::mat4> places{
-        glm::translate(one, middle + glm::vec3(0.1f, 0, 0)), glm::translate(one, middle + glm::vec3(-0.15f, 0.2f, 0.1f)),
+        glm::translate(one, middle + glm::vec3(0.35f, 0, 0)), glm::translate(one, middle + glm::vec3(-0.15f, 0.2f, 0.1f)),
         glm::rotate(glm::translate(one, middle), 0.7f, glm::vec3(0.6f, 0.8f, 0)), glm::translate(one, middle)};
     for (size_t i = 0; i < placeCount; ++i) {
       SCOPED_TRACE(i);
