@@ -7,7 +7,7 @@ RADIVOX_SHARED_BEGIN
 // Faces of a voxel whose mean planes agree share one, that of the largest face (the lowest of equals): four of five voxels have a
 // single plane. Two words each, so that a voxel's fits beside its neighbours' in a cache line: the plane of the voxel's largest
 // face at its compact index, the others, where kPlaneMore says so, from V + planeExtras[voxel] on.
-//   word 0: normal n, octahedral snorm10 × 2 | faces on the plane << 20 | faces of the voxel << 26 (0: no planes)
+//   word 0: normal n, octahedral snorm10 × 2 | faces on the plane that show fronts << 20 | faces of the voxel << 26 (0: no planes)
 //   word 1: n·x in steps of kPlaneStep, 13 bits signed | faceMargins of the largest face << 13 | its axis << 29 | kPlaneMore
 RADIVOX_CONST uint kPlaneMore = 0x80000000u;     // another plane follows
 RADIVOX_CONST float kPlaneStep = 1.0f / 4095.0f;  // |n·x| ≤ 1, since |n.x| + |n.y| + |n.z| = 1 and x lies in the unit cube

@@ -31,7 +31,9 @@ struct WalkHit {
 };
 
 // Voxels are searched for triangles while the ray enters them before `nearDistance`; beyond, and from the first voxel on whose list is empty (too many
-// triangles), its planes count, without `excluded` ones in the first voxel. `own`: the triangle that the ray starts from, `lift` (voxels) off it.
+// triangles), its planes count, without `excluded` ones in the first voxel. A plane that is met from behind counts where one of the voxel's triangles is
+// met, and as that triangle; else the ray goes on. (In Sponza, N = 128, one ray in a hundred met such a plane, and hardly any a back: what
+// the others ended on was dark, and indirect light 0.989 of the truth instead of 1.003.) `own`: the triangle that the ray starts from, `lift` (voxels) off it.
 //
 // CPU devices execute both sides of every branch, for all lanes: what a ray needs once is not in the loops.
 WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random) {
@@ -86,12 +88,14 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
     uint first = doubtful ? triangleFirst(plane.voxel) : 0u, end = doubtful ? triangleFirst(plane.voxel + 1u) : 0u;
     goesOn = first != end;
     if (goesOn) {
-      met = nearestTriangle(way, cursor, first, end, own, lift, time, normal, listed);
+      // From the origin on: planes are rounded, and a ray that hardly leaves its surface may have met the triangle in the voxel before.
+      met = nearestTriangle(way, TraversalCursor(cursor.voxel, 0.0), first, end, own, lift, time, normal, listed);
       voxel = plane.voxel;
       goesOn = !met;
       plane.faces = 0u;
       if (goesOn) traversalStep(way, cursor);
       atStart = false;
+      inFront = 0x3fu;  // of what it has not met; the next voxel may hold it
     }
   }
   result.face = faceOfPlane(way, plane, random);

@@ -9,7 +9,7 @@
 // source  METHODS section 1, Voxelize (area); the paper keeps fragment lists instead
 //
 // Area is that of the polygon inside the half-open voxel, so a voxel that is only touched has no faces, and neither has one whose
-// pieces an alpha mask takes away. Pieces whose projected area is below half of 2⁻³² h² make no face.
+// pieces an alpha mask takes away. Pieces that give a face less than half of 2⁻³² h² make none.
 #pragma once
 
 #include "modules/clustered_voxel/voxelize/triangle_pass.h"

@@ -2,7 +2,7 @@
 //
 // reads   scene.vertices, .indices, .triangle_materials, .materials, .textures; voxelize grid, occupancy; index rank, voxels;
 //         faces mask, first; triangles first?, ids? (which pieces are no part of which faces; absent: all are part of all)
-// writes  faces     Face × F   a_s = Σ w in h², w = area · |n·e_f|; ρ_s, n_s, x_s: means weighted by w; margins: how far from
+// writes  faces     Face × F   a_s = Σ w in h², w = area · |n·e_f| (faces=dominant: area or 0); ρ_s, n_s, x_s: means weighted by w; margins: how far from
 //                             the voxel's sides it ends, seen along e_f
 //         emission  vec3 × F   B_e = π Σ w L_e / a_s, W/m², of what faces outward on this side; 0: dark. Made only if read
 // runs    when the geometry, materials, the voxels or a parameter changes

@@ -8,6 +8,11 @@
 // cost    a separating-axis test a (triangle, voxel) pair in the triangles' planes; 8 bytes a brick of 64 voxels, dense
 // source  clustered_voxel_2022 section 4.1; METHODS section 1, Voxelize
 //
+// Grid also says to which of a voxel's faces surface belongs (faces; shared/face_shares.h): projected, the paper's, gives each of up to three faces its
+// |n·e_f| of the area; dominant gives all to the face that it looks along the most. Six tenths of the faces then hold the same surface in Sponza, each
+// a ray's start in its own right, and the two sides of an edge seldom share one. Rays tell surface as well from them; interpolation over faces does
+// not (graph clustered_voxel: 25.0 instead of 27.7 dB), so it is what graphs whose pixels gather ask for.
+//
 // The cubes are dilated by 2e-5 voxel edges, which covers all rounding: every voxel that the exact test finds is there, and none that
 // the exact test of cubes dilated by 4e-5 does not find. The same bits whatever the method and the device.
 #pragma once

@@ -41,7 +41,7 @@ void main() {
   uint s = radivoxItemIndex();
   if (s >= faceCount) return;
   int exponent = int(viewTable[0]);
-  // Of surface that belongs to one face, as much as projects to the voxel's side.
+  // Of surface that belongs to one face, as much as projects to the voxel's side. (0.57: what looks along an axis the most does so by 1/√3 at least.)
   float most = grid.dominant != 0u ? 1.0 / max(abs(decodeNormal(faces[s].normal)[(faces[s].key & 7u) >> 1]), 0.57) : 1.0;
   float area = min(faces[s].area, most) * grid.h * grid.h;
   vec3 sum;
