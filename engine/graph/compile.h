@@ -21,6 +21,9 @@ struct Source {
   bool isConnected() const { return node != kNone || importIndex != kNone; }
 };
 
+/// Whatever edge each came by.
+inline bool isSame(const Source& a, const Source& b) { return a.node == b.node && a.port == b.port && a.importIndex == b.importIndex; }
+
 /// Why a node is not in the plan. `root` is what the nodes that need it print.
 struct Culled {
   std::string reason;

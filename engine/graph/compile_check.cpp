@@ -90,7 +90,6 @@ void checkDeadVersions(Draft& draft) {
   struct Reader {
     uint32_t node, port;
   };
-  const auto same = [](const Source& a, const Source& b) { return a.node == b.node && a.port == b.port && a.importIndex == b.importIndex; };
   for (uint32_t n = 0; n < draft.declarations.size(); ++n) {
     for (uint32_t p = 0; p < draft.declarations[n].ports.size(); ++p) {
       if (draft.declarations[n].ports[p].access != Access::Modify || !draft.isLive(n) || !draft.reads(n, p)) continue;
@@ -98,7 +97,7 @@ void checkDeadVersions(Draft& draft) {
       const std::string name = draft.sourceName(killed);
       for (uint32_t m = 0; m < draft.declarations.size(); ++m) {
         for (uint32_t q = 0; q < draft.declarations[m].ports.size(); ++q) {
-          if ((m == n && q == p) || !draft.isLive(m) || !draft.reads(m, q) || !same(killed, draft.sources[m][q])) continue;
+          if ((m == n && q == p) || !draft.isLive(m) || !draft.reads(m, q) || !isSame(killed, draft.sources[m][q])) continue;
           const bool both = draft.declarations[m].ports[q].access == Access::Modify;
           if (both && (m < n || (m == n && q < p))) continue;  // said once
           draft.errors.push_back(both ? draft.portName(n, p) + " and " + draft.portName(m, q) + " both modify " + name +

@@ -161,7 +161,6 @@ void cull(Draft& draft) {
 }
 
 void settleFrees(Draft& draft) {
-  const auto same = [](const Source& a, const Source& b) { return a.node == b.node && a.port == b.port; };
   const auto isSoleReader = [&](uint32_t n, uint32_t p) {
     const Source& source = draft.sources[n][p];
     if (source.node == kNone) return false;  // the host's own
@@ -171,7 +170,7 @@ void settleFrees(Draft& draft) {
     for (uint32_t m = 0; m < draft.declarations.size(); ++m) {
       for (uint32_t q = 0; q < draft.declarations[m].ports.size(); ++q) {
         const bool isOther = m != n || q != p;
-        if (isOther && draft.isLive(m) && draft.reads(m, q) && same(source, draft.sources[m][q])) return false;
+        if (isOther && draft.isLive(m) && draft.reads(m, q) && isSame(source, draft.sources[m][q])) return false;
       }
     }
     return true;

@@ -49,13 +49,13 @@ void main() {
       members |= agrees ? 1u << f : 0u;
     }
     left &= ~members;
+    if (kCount) continue;
     // What is made of backs is on the plane, but no surface that shows there.
     for (uint f = 0u; f < kFaceCount; ++f) {
       if (((members >> f) & 1u) == 0u) continue;
       Face face = faceAt(first + uint(bitCount(mask & ((1u << f) - 1u))));
       members &= (face.position & kMadeOfBacks) != 0u ? ~(1u << f) : ~0u;
     }
-    if (kCount) continue;
     uint code = planeNormalCode(largest.normal);
     uint offset = encodePlaneOffset(planeNormal(code), x);
     uint axis = (largest.key & 7u) >> 1;
