@@ -1,5 +1,7 @@
 #include "modules/frame/composite.h"
 
+#include "modules/frame/indirect.h"
+
 namespace radivox::frame {
 
 using gpu::BindingType;
@@ -13,10 +15,9 @@ void Composite::declare(graph::Declaration& d) {
   d.read("irradiance", "E_direct, W/m²").optional = true;
   graph::Port& indirect = d.read("indirect", "E_indirect, W/m²; a: sky visibility");
   indirect.optional = true;
-  const char* nothingBounces = d.traits.whyNothingBounces();
-  indirect.unwanted = (!d.traits.sky || d.traits.skyImage) && (!d.request.wantsIndirect() || nothingBounces != nullptr) &&
-                      !d.traits.keeps(scene::Feature::Bounces);
-  indirect.unwantedReason = !d.request.wantsIndirect() ? "0 bounces asked for and no sky" : nothingBounces != nullptr ? nothingBounces : "";
+  const char* noIndirect = whyNoIndirect(d);
+  indirect.unwanted = noIndirect != nullptr && !d.traits.keeps(scene::Feature::Bounces);
+  indirect.unwantedReason = indirect.unwanted ? noIndirect : "";
   constexpr const char* kNoImage = "the sky has no image";
   d.readIf(d.traits.skyImage, "sky", "E_sky, W/m²", kNoImage);
   d.readIf(d.traits.skyImage, "scene.sky", "the sky's image", kNoImage);

@@ -18,6 +18,7 @@
 #pragma once
 
 #include "engine/graph/node.h"
+#include "modules/frame/sides.h"
 
 namespace radivox::frame {
 
@@ -38,11 +39,14 @@ class Direct : public graph::Node {
 
   enum class Edges : uint32_t { Exact, Filtered };
   Edges edges_ = Edges::Exact;
+  bool rays_ = true;
+  Sides sides_ = Sides::Both;
   uint32_t filter_ = 3;
   uint32_t closedForm_ = 256;
   params::Table table_;
   Emitters emitters_ = Emitters::None;
-  gpu::Pipeline pipeline_;
+  bool hasRays_ = false;
+  gpu::Pipeline pipeline_, clearancePipeline_;
   const gpu::Image absent_{};  ///< bound where the specialized shader reads nothing
 };
 

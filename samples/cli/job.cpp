@@ -138,7 +138,9 @@ void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char*
 
   std::vector<Source> presets;
   std::optional<std::string> graphName = options.graph;
-  for (const std::string& name : options.presets) {
+  std::vector<std::string> presetNames = options.presets;
+  if (presetNames.empty() && !options.graph && std::string_view(fallbackGraph) == kPictureGraph) presetNames = {kDefaultPreset};
+  for (const std::string& name : presetNames) {
     presets.push_back(findPreset(name));
     const json parsed = parsePreset(presets.back());
     applyRequest(presets.back(), parsed, job);

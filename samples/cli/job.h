@@ -40,6 +40,8 @@ struct Job {
 /// past them, the one that gathers by faces.
 inline constexpr const char* kPictureGraph = "clustered_voxel_pixels";
 inline constexpr const char* kFaceGraph = "clustered_voxel";
+/// What pictures start from where neither --graph nor --preset is given; its graph is kPictureGraph.
+inline constexpr const char* kDefaultPreset = "default";
 
 /// Fills `job`; the graph's outputs are those that the AOVs need, and with `wantsDisplay` the tone-mapped picture. Throws BadInput.
 void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char* fallbackGraph = kPictureGraph);

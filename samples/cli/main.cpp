@@ -70,7 +70,8 @@ void addSceneOptions(CLI::App* command, Options& options, const std::string& fal
 void addPlanOptions(CLI::App* command, Options& options) {
   addSceneOptions(command, options);
   addGraphOption(command, options, kPictureGraph);
-  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated", "NAME|FILE.json");
+  addRepeated(command, "--preset", options.presets, "settings to start from; may be repeated (without it and --graph: default)",
+              "NAME|FILE.json");
   addRepeated(command, "--set", options.sets, "one parameter; may be repeated", "node.param=value");
   command->add_option("--bounces", options.bounces, "indirect bounces: 0 is direct light only, all (default) the converged solution")
       ->type_name("N|all");

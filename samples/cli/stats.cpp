@@ -95,9 +95,9 @@ double bytesPerVoxel(const graph::FrameStats& frame, const graph::Plan& plan) {
   // Pictures are the request's, not the method's.
   std::set<std::string> pictures;
   for (const graph::PlannedResource& resource : plan.resources) {
-    const std::vector<std::string>& counts = resource.shape.width.counts();
-    if (resource.shape.kind == graph::ResourceKind::Image && std::find(counts.begin(), counts.end(), "width") != counts.end())
-      pictures.insert(resource.name);
+    const bool isImage = resource.shape.kind == graph::ResourceKind::Image;
+    const std::vector<std::string>& counts = isImage ? resource.shape.width.counts() : resource.shape.elements.counts();
+    if (std::find(counts.begin(), counts.end(), "width") != counts.end()) pictures.insert(resource.name);
   }
   uint64_t bytes = 0;
   for (const graph::ResourceStats& resource : frame.resources) {

@@ -117,8 +117,8 @@ class Calibration {
     if (options_.graph) return {*options_.graph};
     if (!options_.presets.empty()) return {options_.presets.front()};
     // Other graphs lack some AOVs and nodes of the one that is meant without --graph.
-    if (options_.aovs != "color" || !options_.sets.empty()) return {cli::kPictureGraph};
-    return {"direct", cli::kFaceGraph, cli::kPictureGraph};
+    if (options_.aovs != "color" || !options_.sets.empty()) return {cli::kDefaultPreset};
+    return {"direct", cli::kFaceGraph, cli::kDefaultPreset};
   }
 
   SceneTruth trace(const scene::CameraDescription& camera) {

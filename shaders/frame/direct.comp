@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #include "shared/light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,6 +34,20 @@ layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D irradianceImage
 layout(set = 0, binding = 13, scalar) readonly buffer TriangleMaterials { uint triangleMaterials[]; };
 layout(set = 0, binding = 14, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer View { Camera camera; };
+layout(constant_id = 6) const bool kRays = false;             // shadows of punctual lights by rays through the triangles in the voxels
+layout(constant_id = 7) const uint kSkip = 1u;                // shared/voxel_march.glsl
+layout(constant_id = 8) const bool kCorners = false;          // triangleCorners is there
+layout(constant_id = 9) const bool kSides = false;            // back faces of single-sided materials cast no shadow
+#define RADIVOX_BIND_GRID 16
+#define RADIVOX_BIND_OCCUPANCY 17
+#define RADIVOX_BIND_RANK 18
+#define RADIVOX_BIND_DISTANCE 19
+#define RADIVOX_BIND_CLEARANCE 20
+#define RADIVOX_SKIP kSkip
+layout(set = 0, binding = 21) uniform usamplerBuffer triangleFirstTexels;
+layout(set = 0, binding = 22) uniform usamplerBuffer triangleIdTexels;
+layout(set = 0, binding = 23) uniform samplerBuffer triangleCorners;
+layout(set = 0, binding = 24, scalar) readonly buffer Textures { Texture textures[]; };
 
 #include "frame/polygon.glsl"
 #include "frame/shadow.glsl"
@@ -53,6 +69,7 @@ vec3 closedForm(vec3 p, vec3 n, vec3 g, out float formFactors) {
 }
 
 void main() {
+  if (kRays) castBegin();
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(irradianceImage)))) return;
   uint own = imageLoad(triangleImage, pixel).x;
@@ -92,7 +109,9 @@ void main() {
     float seen = 1.0;
     if (kShadowed) {
       // Written so that specialization leaves out the way that no light of the scene takes.
-      if (kExactEdges && !(kSampled && isSample)) {
+      if (kRays && !(kSampled && isSample)) {
+        seen = rayVisibility(light, p, g, own, position.w);
+      } else if (kExactEdges && !(kSampled && isSample)) {
         seen = exactVisibility(light, p, g, own, position.w);
       } else {
         seen = filteredVisibility(light, p, g, own, isSample ? sqrt(patchArea) : 0.0);

@@ -7,7 +7,9 @@
 //   P high above the plane                                   → the texel is in shadow;
 //   P near the plane (some texels: walls on floors, creases, curved surfaces) → the map is too coarse to tell, so the triangle itself
 //   is asked whether it stands between the point and the light.
-// From there two ways:
+// From there three ways:
+//   rayVisibility       as exactVisibility, but points see what rays through the triangles in the voxels say (shadow_rays.glsl): occluders thinner than
+//                       a texel cast their shadows. The map saves rays where one of the triangles it names is in the way, and tells where edges are.
 //   exactVisibility     texels only propose occluders; where they disagree, the triangles decide. Edges are as sharp as the geometry,
 //                       whatever the map's resolution, and are smoothed over the pixel. For punctual lights.
 //   filteredVisibility  the share of texels in a tent. Blurs each of many emitter samples into a penumbra.
@@ -17,6 +19,7 @@
 #define RADIVOX_SHADERS_FRAME_SHADOW_GLSL
 
 #include "shared/shadow_lookup.glsl"
+#include "frame/shadow_rays.glsl"
 
 // Visibility of one point from the four texels about it: 0 or 1, or between them where coarse triangles are at the edge.
 const int kCandidateReach = 2;
@@ -95,29 +98,39 @@ bool prepareBeside(Light light, vec3 p, vec3 q, bool lit, out Lookup l) {
   return found;
 }
 
-// Share of the pixel that sees `light`. viewDepth: p's distance along the view axis.
+// Do the corners of a pixel of several texels see what its centre sees, as the map has it?
+bool cornersAgree(Light light, vec3 p, vec3 g, uint own, float pixel, float texel, bool seen) {
+  bool agreed = true;
+  Lookup at;
+  [[dont_unroll]] for (uint k = 0u; k < 4u && agreed && pixel > texel; ++k) {
+    vec3 q = pointOfPixel(p, g, vec2(k & 1u, k >> 1) - 0.5, pixel);
+    uint id, state = kLit;
+    vec3 unused;
+    if (prepareBeside(light, p, q, seen, at)) state = classifyTexel(at, ivec2(floor(at.centre)), q, g, own, 2.0 * at.texel, id, unused);
+    agreed = (state == kLit || state == kBeside) == seen;
+  }
+  return agreed;
+}
+
+// Sample k of those that a pixel with an edge in it takes, pixels from its centre.
 const uint kEdgeSamples = 8u;
+vec2 edgeSample(uint k) {
+  return vec2(float(k) / float(kEdgeSamples), float(bitfieldReverse(k) >> 8) / 16777216.0) + 0.5 / float(kEdgeSamples) - 0.5;
+}
+
+// Share of the pixel that sees `light`. viewDepth: p's distance along the view axis.
 float exactVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
   Lookup l, at;
   if (!prepareLookup(light, p, l)) return 1.0;
   PointLookup centre = lookUpPoint(l, p, g, own);
   float pixel = camera.pixelAngle * (camera.orthographic != 0u ? 1.0 : viewDepth);
-  bool agreed = centre.agreed;
-  // A pixel of several texels: do its corners see what its centre sees?
-  [[dont_unroll]] for (uint k = 0u; k < 4u && agreed && pixel > l.texel; ++k) {
-    vec3 q = pointOfPixel(p, g, vec2(k & 1u, k >> 1) - 0.5, pixel);
-    uint id, state = kLit;
-    vec3 unused;
-    if (prepareBeside(light, p, q, centre.seen > 0.0, at)) state = classifyTexel(at, ivec2(floor(at.centre)), q, g, own, 2.0 * at.texel, id, unused);
-    agreed = (state == kLit || state == kBeside) == (centre.seen > 0.0);
-  }
+  bool agreed = centre.agreed && cornersAgree(light, p, g, own, pixel, l.texel, centre.seen > 0.0);
   if (agreed) return centre.seen;
 
   vec3 lift = 2.0 * l.slack * g;
   float seen = 0.0, total = 0.0;
   [[dont_unroll]] for (uint k = 0u; k < kEdgeSamples; ++k) {
-    vec2 offset = vec2(float(k) / float(kEdgeSamples), float(bitfieldReverse(k) >> 8) / 16777216.0) + 0.5 / float(kEdgeSamples) - 0.5;
-    vec3 q = pointOfPixel(p, g, offset, pixel);
+    vec3 q = pointOfPixel(p, g, edgeSample(k), pixel);
     float v = 1.0;
     if (prepareBeside(light, p, q, centre.seen > 0.0, at)) {
       PointLookup there = lookUpPoint(at, q, g, own);
@@ -128,6 +141,58 @@ float exactVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
     total += 1.0;
   }
   return total > 0.0 ? seen / total : centre.seen;
+}
+
+// Does one of the triangles that the map names stand between p and the light? Without holes, that is.
+bool isBlockedByNamed(PointLookup found, Lookup l, vec3 p) {
+  uint last = kNoTexture;
+  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
+    uint id = found.ids[k];
+    if (id == kNoTexture || id == last) continue;
+    last = id;
+    if (kMasked && (materials[triangleMaterials[id]].flags & kMaterialAlphaMask) != 0u) continue;
+    vec3 p0, e1, e2;
+    fetchTriangle(id, p0, e1, e2);
+    if (cutsSegment(p0, e1, e2, p, l.toLight, l.tMin, l.tMax)) return true;
+  }
+  return false;
+}
+
+// Share of the pixel that sees `light`, by rays.
+float rayVisibility(Light light, vec3 p, vec3 g, uint own, float viewDepth) {
+  bool parallel = light.type == kLightDirectional;
+  vec3 toLight = parallel ? -light.direction : light.position - p;
+  float distance_ = parallel ? 3.4e38 : length(toLight) * 0.999;
+  float pixel = camera.pixelAngle * (camera.orthographic != 0u ? 1.0 : viewDepth);
+  PointLookup map;
+  map.agreed = false;
+  float seen = 0.0;
+  bool isKnown = false;
+  Lookup l;
+  if (prepareLookup(light, p, l)) {
+    map = lookUpPoint(l, p, g, own);
+    map.agreed = map.agreed && cornersAgree(light, p, g, own, pixel, l.texel, map.seen > 0.0);
+    isKnown = map.agreed && map.seen == 0.0 && isBlockedByNamed(map, l, p);
+  }
+  if (!isKnown) {
+    uint centre = castShadowRay(p, g, normalize(toLight), distance_, own);
+    if (centre == kRayUnknown) return exactVisibility(light, p, g, own, viewDepth);
+    seen = centre == kRayFree ? 1.0 : 0.0;
+  }
+  if (map.agreed && map.seen == seen) return seen;
+
+  float sum = 0.0, total = 0.0;
+  [[dont_unroll]] for (uint k = 0u; k < kEdgeSamples; ++k) {
+    vec3 q = pointOfPixel(p, g, edgeSample(k), pixel);
+    vec3 way = parallel ? toLight : light.position - q;
+    uint beside = castBeside(p, q, g, own);
+    uint there = beside == kRayFree ? castShadowRay(q, g, normalize(way), parallel ? distance_ : length(way) * 0.999, own) : beside;
+    if (there == kRayUnknown) return exactVisibility(light, p, g, own, viewDepth);
+    if (beside == kRayBlocked) continue;
+    sum += there == kRayFree ? 1.0 : 0.0;
+    total += 1.0;
+  }
+  return total > 0.0 ? sum / total : seen;
 }
 
 // Distinct triangles of a filter's shadowed texels: the first few stand for all.

@@ -42,7 +42,7 @@ TEST_F(BudgetCommand, SlowTheChosenPictureKeepsTheErrorAndIsChosenAgainAtOnce) {
 #endif
   const CommandResult first = render({"--max-error", "0.3"});
   ASSERT_EQ(first.exitCode, 0) << first.err;
-  EXPECT_EQ(first.out.rfind("settings: clustered_voxel_pixels", 0), 0u) << "the graph that --set is meant for: " << first.out;
+  EXPECT_EQ(first.out.rfind("settings: default", 0), 0u) << "the graph that --set is meant for: " << first.out;
   // The picture itself, against a reference of its own.
   ASSERT_EQ(command({"reference", "builtin:cornell_point", "--size", "48x48", "--bounces", "2", "--spp", "256", "--halves", "--out",
                      path("truth.exr")})

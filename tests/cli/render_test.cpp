@@ -60,10 +60,10 @@ TEST_F(RenderCommand, SlowTakesASkyInPlaceOfTheScenesOwn) {
 }
 
 TEST_F(RenderCommand, WritesTheLayersAskedForAndTheyAddUp) {
-  ASSERT_NO_FATAL_FAILURE(expectDone(
-      render("builtin:cornell_point", {"--validate", "--out", path("a.exr"), "--out", path("a.png"), "--stats", path("a.json"), "--aov",
-                                       "color,direct,indirect,irradiance_direct,irradiance_indirect,albedo,"
-                                       "normal,position,depth,face,cluster"})));
+  ASSERT_NO_FATAL_FAILURE(expectDone(render("builtin:cornell_point", {"--validate", "--supersample", "1", "--out", path("a.exr"), "--out",
+                                                                      path("a.png"), "--stats", path("a.json"), "--aov",
+                                                                      "color,direct,indirect,irradiance_direct,irradiance_indirect,albedo,"
+                                                                      "normal,position,depth,face,cluster"})));
   EXPECT_EQ(files(), (std::vector<std::string>{"a.exr", "a.json", "a.png"}));
   const std::vector<image::Layer> layers = image::readExr(path("a.exr"));
   std::set<std::string> names;
@@ -76,7 +76,7 @@ TEST_F(RenderCommand, WritesTheLayersAskedForAndTheyAddUp) {
   }
   EXPECT_EQ(names, (std::set<std::string>{"color", "direct", "indirect", "irradiance_direct", "irradiance_indirect", "albedo", "normal",
                                           "position", "depth", "face", "cluster"}));
-  // L = (direct + indirect) and each = ρE/π: the box has no emitters and no sky.
+  // L = (direct + indirect) and each = ρE/π (of one sample a pixel; means do not multiply): the box has no emitters and no sky.
   const auto at = [&](const char* name, size_t i) { return static_cast<double>(find(layers, name)->image.data[i]); };
   double indirect = 0;
   for (size_t i = 0; i < 24 * 16 * 3; ++i) {

@@ -110,6 +110,17 @@ FrameRun::FrameRun(gpu::Device& device, const scene::Scene& scene, const FrameOp
   for (const char* port : {"albedo", "emission"}) graph->connect(std::string("gbuffer.") + port, std::string("composite.") + port);
   graph->connect("direct.irradiance", "composite.irradiance");
   graph->connect("composite.color", "tone_map.color");
+  if (options.voxels > 0) {
+    for (const char* name : {"voxelize", "index", "triangles"}) graph->add(name, registry.make(std::string("clustered_voxel.") + name));
+    for (const char* reader : {"index", "triangles", "direct"})
+      for (const char* port : {"grid", "occupancy"}) graph->connect(std::string("voxelize.") + port, std::string(reader) + "." + port);
+    for (const char* reader : {"triangles", "direct"}) graph->connect("index.rank", std::string(reader) + ".rank");
+    graph->connect("index.voxels", "triangles.voxels");
+    graph->connect("index.distance", "direct.distance");
+    for (const char* port : {"first", "ids"}) graph->connect(std::string("triangles.") + port, std::string("direct.triangle_") + port);
+    graph->connect("triangles.corners", "direct.corners");
+    graph->set("voxelize.resolution", std::to_string(options.voxels));
+  }
   for (const auto& [name, value] : options.settings) graph->set(name, value);
   for (const std::string& output : options.outputs) graph->output(output);
 

@@ -31,12 +31,13 @@ class SceneBuilder {
 struct FrameOptions {
   uint32_t width = 64, height = 48;
   uint32_t bounces = 0;
+  uint32_t voxels = 0;  ///< resolution of the grid whose triangles decide shadows; 0: maps alone. Needs `bounces`
   std::vector<std::pair<std::string, std::string>> settings;  ///< "direct.filter" = "0"
   std::vector<std::string> outputs{"composite.color"};
   scene::LightOptions lights;
 };
 
-/// gbuffer, shadow_map, direct, composite, tone_map, wired as the sample graphs wire them.
+/// gbuffer, shadow_map, direct, composite, tone_map, and the voxels' triangles where `voxels` asks for them, wired as the sample graphs wire them.
 class FrameRun {
  public:
   FrameRun(gpu::Device& device, const scene::Scene& scene, const FrameOptions& options);

@@ -27,6 +27,13 @@ FrameOptions options(uint32_t width, uint32_t height) {
   return o;
 }
 
+/// Shadows by rays through the triangles in voxels.
+FrameOptions withRays(FrameOptions o, uint32_t resolution = 48) {
+  o.voxels = resolution;
+  o.bounces = 1;
+  return o;
+}
+
 /// A floor, a wall behind it, and boxes: two on the floor, one in the air.
 SceneBuilder makeCourt() {
   SceneBuilder b;
@@ -87,11 +94,12 @@ Tally compareVisibility(FrameRun& run, const SceneBuilder& b, double radius) {
   return tally;
 }
 
-/// filter: "exact", or the filter's half width in texels. What is near an edge: `radius`, or for exact edges a pixel of at most 6 cm, which is
+/// filter: "exact", "rays", or the filter's half width in texels. What is near an edge: `radius`, or for exact edges a pixel of at most 6 cm, which is
 /// longer on the ground.
 void checkCourt(gpu::Device& device, const SceneBuilder& b, const std::string& filter, double radius, const char* name) {
   FrameOptions o = options(160, 120);
-  if (filter != "exact") o.settings = {{"direct.edges", "filtered"}, {"direct.filter", filter}};
+  if (filter == "rays") o = withRays(o);
+  if (filter != "exact" && filter != "rays") o.settings = {{"direct.edges", "filtered"}, {"direct.filter", filter}};
   FrameRun run(device, b.scene, o);
   const Tally tally = compareVisibility(run, b, radius);
   frame_test::show(run.picture("direct.irradiance"), std::string("court_") + name + "_" + filter);
@@ -106,28 +114,28 @@ TEST_F(ShadowTest, BoxesUnderTheSun) {
   b.addSun({0.5f, -1.f, -0.3f}, glm::vec3(3.f));
   // Texels are 7 mm; a filter of r texels reaches r·√2 of them, longer by 1/cos on the ground.
   for (const char* filter : {"0", "1", "3"}) checkCourt(device(), b, filter, 0.012 * (std::stod(filter) + 1), "sun");
-  checkCourt(device(), b, "exact", kPixelReach, "sun");
+  for (const char* edges : {"exact", "rays"}) checkCourt(device(), b, edges, kPixelReach, "sun");
 }
 
 TEST_F(ShadowTest, BoxesUnderALowSun) {
   SceneBuilder b = makeCourt();
   b.addSun({1.f, -0.25f, -0.4f}, glm::vec3(3.f));
   checkCourt(device(), b, "1", 0.08, "low sun");
-  checkCourt(device(), b, "exact", kPixelReach, "low sun");
+  for (const char* edges : {"exact", "rays"}) checkCourt(device(), b, edges, kPixelReach, "low sun");
 }
 
 TEST_F(ShadowTest, BoxesAroundAPointLight) {
   SceneBuilder b = makeCourt();
   b.addPoint({0.f, 1.5f, 0.2f}, glm::vec3(10.f));  // all six views are in use
   checkCourt(device(), b, "1", 0.06, "point");
-  checkCourt(device(), b, "exact", kPixelReach, "point");
+  for (const char* edges : {"exact", "rays"}) checkCourt(device(), b, edges, kPixelReach, "point");
 }
 
 TEST_F(ShadowTest, BoxesUnderASpot) {
   SceneBuilder b = makeCourt();
   b.addSpot({3.f, 5.f, 3.f}, {-0.6f, -1.f, -0.6f}, glm::vec3(50.f), 0.5f, 0.6f);
   checkCourt(device(), b, "1", 0.03, "spot");
-  checkCourt(device(), b, "exact", kPixelReach, "spot");
+  for (const char* edges : {"exact", "rays"}) checkCourt(device(), b, edges, kPixelReach, "spot");
 }
 
 TEST_F(ShadowTest, NothingLeaksUnderAThinWall) {
@@ -141,10 +149,10 @@ TEST_F(ShadowTest, NothingLeaksUnderAThinWall) {
     b.lookParallel({0.f, 9.f, 0.f}, {0.f, 0.f, 0.f}, 0.05f);
     FrameOptions o = options(64, 64);
     o.lights.shadowResolution = 256;
-    for (const std::string filter : {"0", "1", "3", "exact"}) {
+    for (const std::string filter : {"0", "1", "3", "exact", "rays"}) {
       o.settings = {{"direct.edges", "filtered"}, {"direct.filter", filter}};
-      if (filter == "exact") o.settings.clear();
-      FrameRun run(device(), b.scene, o);
+      if (filter == "exact" || filter == "rays") o.settings.clear();
+      FrameRun run(device(), b.scene, filter == "rays" ? withRays(o) : o);
       const auto position = run.pixels("gbuffer.position"), irradiance = run.pixels("direct.irradiance");
       const auto triangle = run.words("gbuffer.triangle");
       const double full = 2.0 / std::sqrt(1.01 + double{tilt} * double{tilt});
@@ -165,13 +173,15 @@ TEST_F(ShadowTest, NothingLeaksAlongAThinWallFromAPoint) {
   b.lookParallel({0.f, 9.f, 0.f}, {0.f, 0.f, 0.f}, 0.05f);
   FrameOptions o = options(64, 64);
   o.lights.pointShadowResolution = 128;
-  FrameRun run(device(), b.scene, o);
-  const auto position = run.pixels("gbuffer.position"), irradiance = run.pixels("direct.irradiance");
-  const LightOracle oracle(b.scene);
-  for (size_t i = 0; i < position.size(); ++i) {
-    if (position[i].y > 0.01f || std::abs(position[i].x) < 1e-4f) continue;
-    const double full = oracle.punctualIrradiance(glm::dvec3(position[i]), {0, 1, 0}, {0, 1, 0}, false).x;
-    EXPECT_NEAR(irradiance[i].x, position[i].x < 0.f ? full : 0.0, 1e-4 * full) << "x = " << position[i].x;
+  for (const bool rays : {false, true}) {
+    FrameRun run(device(), b.scene, rays ? withRays(o) : o);
+    const auto position = run.pixels("gbuffer.position"), irradiance = run.pixels("direct.irradiance");
+    const LightOracle oracle(b.scene);
+    for (size_t i = 0; i < position.size(); ++i) {
+      if (position[i].y > 0.01f || std::abs(position[i].x) < 1e-4f) continue;
+      const double full = oracle.punctualIrradiance(glm::dvec3(position[i]), {0, 1, 0}, {0, 1, 0}, false).x;
+      EXPECT_NEAR(irradiance[i].x, position[i].x < 0.f ? full : 0.0, 1e-4 * full) << "x = " << position[i].x << (rays ? ", rays" : "");
+    }
   }
 }
 
@@ -208,27 +218,122 @@ TEST_F(ShadowTest, SlowCurvedSurfacesHaveNoAcne) {
       }
       FrameOptions o = options(96, 96);
       o.lights.shadowResolution = o.lights.pointShadowResolution = 256;
-      FrameRun run(device(), b.scene, o);
-      frame_test::show(run.picture("direct.irradiance"), "sphere_" + std::to_string(rings) + (inside ? "_inside" : "_outside"));
-      const auto position = run.pixels("gbuffer.position"), normal = run.pixels("gbuffer.normal"),
-                 irradiance = run.pixels("direct.irradiance");
-      const auto triangle = run.words("gbuffer.triangle");
-      const LightOracle oracle(b.scene);
-      size_t lit = 0, wrong = 0;
-      for (size_t i = 0; i < position.size(); ++i) {
-        if (triangle[i] == 0) continue;
-        const glm::dvec3 p(position[i]), n(normal[i]);
-        glm::dvec3 g = oracle.normal(triangle[i] - 1);
-        if (glm::dot(g, n) < 0) g = -g;
-        const double expected = oracle.punctualIrradiance(p + 1e-5 * g, n, g, true).x;
-        if (expected <= 0) continue;
-        ++lit;
-        if (std::abs(irradiance[i].x - expected) > 1e-3 * expected) ++wrong;
+      for (const bool rays : {false, true}) {
+        FrameRun run(device(), b.scene, rays ? withRays(o) : o);
+        frame_test::show(run.picture("direct.irradiance"),
+                         "sphere_" + std::to_string(rings) + (inside ? "_inside" : "_outside") + (rays ? "_rays" : ""));
+        const auto position = run.pixels("gbuffer.position"), normal = run.pixels("gbuffer.normal"),
+                   irradiance = run.pixels("direct.irradiance");
+        const auto triangle = run.words("gbuffer.triangle");
+        const LightOracle oracle(b.scene);
+        size_t lit = 0, wrong = 0;
+        for (size_t i = 0; i < position.size(); ++i) {
+          if (triangle[i] == 0) continue;
+          const glm::dvec3 p(position[i]), n(normal[i]);
+          glm::dvec3 g = oracle.normal(triangle[i] - 1);
+          if (glm::dot(g, n) < 0) g = -g;
+          const double expected = oracle.punctualIrradiance(p + 1e-5 * g, n, g, true).x;
+          if (expected <= 0) continue;
+          ++lit;
+          if (std::abs(irradiance[i].x - expected) > 1e-3 * expected) ++wrong;
+        }
+        EXPECT_GT(lit, 1000u);
+        EXPECT_EQ(wrong, 0u) << rings << (inside ? " inside" : " outside") << (rays ? ", rays" : "") << ", of " << lit;
       }
-      EXPECT_GT(lit, 1000u);
-      EXPECT_EQ(wrong, 0u) << rings << (inside ? " inside" : " outside") << ", of " << lit;
     }
   }
+}
+
+/// Ledges that stand out of a wall, thinner than what a texel of the shadow map is wide.
+SceneBuilder makeLedges(float reach, uint32_t flags = 0) {
+  SceneBuilder b;
+  const uint32_t ledge = b.addMaterial(glm::vec3(0.5f), glm::vec3(0.f), flags);
+  b.addQuad({-5.f, 0.f, 0.f}, {5.f, 0.f, 0.f}, {5.f, 5.f, 0.f}, {-5.f, 5.f, 0.f});
+  for (int i = 0; i < 20; ++i) {
+    const float y = 0.13f + 0.23f * static_cast<float>(i);
+    b.addQuad({-5.f, y, reach}, {5.f, y, reach}, {5.f, y, 0.f}, {-5.f, y, 0.f}, ledge);
+  }
+  b.lookAt({0.5f, 2.2f, 1.6f}, {0.f, 2.4f, 0.f}, 0.9f);
+  return b;
+}
+
+TEST_F(ShadowTest, RaysFindOccludersThatMapsMiss) {
+  SceneBuilder b = makeLedges(0.04f);
+  for (const bool isPoint : {false, true}) {
+    b.scene.lights.clear();
+    if (isPoint) {
+      b.addPoint({0.4f, 4.7f, 0.7f}, glm::vec3(9.f));
+    } else {
+      b.addSun({0.3f, -1.f, -0.6f}, glm::vec3(3.f));
+    }
+    FrameOptions o = options(120, 90);
+    o.lights.shadowResolution = o.lights.pointShadowResolution = 64;  // texels of 15 cm
+    FrameRun maps(device(), b.scene, o), rays(device(), b.scene, withRays(o));
+    const std::string name = isPoint ? "ledges_point" : "ledges_sun";
+    frame_test::show(maps.picture("direct.irradiance"), name + "_maps");
+    frame_test::show(rays.picture("direct.irradiance"), name + "_rays");
+    const Tally missed = compareVisibility(maps, b, 0.025), found = compareVisibility(rays, b, 0.025);
+    std::printf("%s: %zu pixels, wrong %zu by maps, %zu by rays, %zu near an edge\n", name.c_str(), found.compared, missed.wrong,
+                found.wrong, found.near);
+    EXPECT_GT(found.compared, 5000u);
+    EXPECT_GT(missed.wrong, found.compared / 10) << "the test wants thin occluders";
+    EXPECT_EQ(found.wrong, 0u);
+  }
+}
+
+TEST_F(ShadowTest, RaysObeySidesAndMasks) {
+  const auto mean = [&](const SceneBuilder& b, bool rays, std::vector<std::pair<std::string, std::string>> settings = {}) {
+    FrameOptions o = options(96, 72);
+    o.settings = std::move(settings);
+    FrameRun run(device(), b.scene, rays ? withRays(o) : o);
+    double sum = 0;
+    for (const glm::vec4& e : run.pixels("direct.irradiance")) sum += e.x;
+    return sum / (96 * 72);
+  };
+  // From below, the ledges show the light their backs.
+  SceneBuilder b = makeLedges(0.1f);
+  b.addSun({0.3f, 1.f, -0.6f}, glm::vec3(3.f));
+  const double both = mean(b, true), gltf = mean(b, true, {{"direct.sides", "gltf"}, {"shadow_map.sides", "gltf"}});
+  EXPECT_NEAR(both / mean(b, false), 1.0, 0.02);
+  EXPECT_NEAR(gltf / mean(b, false, {{"shadow_map.sides", "gltf"}}), 1.0, 0.02);
+  EXPECT_GT(gltf, 1.2 * both);
+  // Half of each ledge is holes.
+  SceneBuilder masked = makeLedges(0.1f, shared::kMaterialAlphaMask);
+  masked.scene.lights = b.scene.lights;
+  scene::TextureImage stripes;
+  stripes.name = "stripes";
+  stripes.width = 8;
+  stripes.height = 1;
+  stripes.nearest = true;
+  for (uint32_t i = 0; i < 8; ++i) stripes.rgba.insert(stripes.rgba.end(), {255, 255, 255, static_cast<uint8_t>(i % 2 == 0 ? 255 : 0)});
+  masked.scene.textures.push_back(stripes);
+  masked.scene.materials.back().baseTexture = 0;
+  const double holes = mean(masked, true);
+  EXPECT_NEAR(holes / mean(masked, false), 1.0, 0.02);
+  EXPECT_GT(holes, 1.1 * both);
+}
+
+TEST_F(ShadowTest, WhereVoxelsHoldTooManyTrianglesMapsDecide) {
+  SceneBuilder b = makeCourt();
+  b.addSun({0.5f, -1.f, -0.3f}, glm::vec3(3.f));
+  FrameOptions crowded = withRays(options(160, 120), 8);
+  crowded.settings = {{"triangles.most", "1"}};
+  FrameRun run(device(), b.scene, crowded);
+  const Tally tally = compareVisibility(run, b, kPixelReach);
+  EXPECT_EQ(tally.wrong, 0u);
+  EXPECT_GT(tally.compared, 7000u);
+}
+
+TEST_F(ShadowTest, RaysAreLeftOutWithoutIndirectLight) {
+  SceneBuilder b = makeCourt();
+  b.addSun({0.5f, -1.f, -0.3f}, glm::vec3(3.f));
+  FrameOptions o = withRays(options(32, 24));
+  EXPECT_EQ(FrameRun(device(), b.scene, o).culledReason("triangles"), "");
+  o.bounces = 0;
+  EXPECT_NE(FrameRun(device(), b.scene, o).culledReason("triangles").find("0 bounces"), std::string::npos);
+  o.bounces = 1;
+  o.settings = {{"direct.rays", "false"}};
+  EXPECT_NE(FrameRun(device(), b.scene, o).culledReason("triangles").find("maps alone"), std::string::npos);
 }
 
 TEST_F(ShadowTest, PenumbraOfAnEmitterMatchesIntegration) {

@@ -45,8 +45,9 @@ gpu::Pipeline makePipeline(gpu::Device& device, const char* shader, size_t bindi
 Bounce::Bounce()
     : table_({params::choice("solver", &solver_, {"chebyshev", "plain"}, "accelerated, or plain iteration (for comparison)",
                              params::Invalidates::Rerun),
-              params::choice("last", &last_, {"faces", "clusters"},
-                             "who receives the last bounce: each face by its own rays (where they are connected), or its cluster",
+              params::choice("last", &last_, {"faces", "clusters", "auto"},
+                             "who receives the last bounce: each face by its own rays (where they are connected), its cluster, or (auto) "
+                             "faces where the sky's light keeps their rows in memory anyway, else clusters",
                              params::Invalidates::Plan),
               params::swept(params::number("residual", &residual_, {1e-7, 0.1}, "where to stop: largest residual over the largest source",
                                            params::Invalidates::Rerun),
@@ -68,9 +69,10 @@ void Bounce::declare(graph::Declaration& d) {
   for (const char* name : {"row_start", "entries", "sky"}) {
     d.readIf(needsMatrix, name, "form factors between clusters", "one bounce needs no light between clusters").optional = !needsMatrix;
   }
-  const bool needsRows = bounces > 1 && last_ == Last::Faces;
+  const bool toFaces = last_ == Last::Faces || (last_ == Last::Auto && d.traits.sky);
+  const bool needsRows = bounces > 1 && toFaces;
   for (const char* name : {"visibility_row_start", "visibility_entries", "chunk_table"})
-    d.readIf(needsRows, name, "rows of the faces", bounces > 1 ? "bounce.last=clusters" : "one bounce needs no light between clusters");
+    d.readIf(needsRows, name, "rows of the faces", bounces > 1 ? "the last bounce goes to clusters" : "one bounce needs no light between clusters");
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("labels", "cluster id of each face");

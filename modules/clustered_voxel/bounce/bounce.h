@@ -21,9 +21,9 @@
 // lies beside a far brighter light) plain steps go on until it is not; if its residual does not fall over 16 steps, plain steps follow, which
 // contract in every case since rows of F sum to at most 1 and ρ < 1.
 //
-// last=faces, where rows are connected: each face receives the last bounce by its own rays, from the solved clusters; hits near it count with the
-// direct light of the very face. A cluster's mean knows neither which of its faces lie in the open nor which are seen: without this, every bounce
-// loses some two parts in a hundred in Sponza.
+// last=faces (auto: under a sky, since its light keeps the rows in memory anyway), where rows are connected: each face receives the last bounce by
+// its own rays, from the solved clusters; hits near it count with the direct light of the very face. A cluster's mean knows neither which of its
+// faces lie in the open nor which are seen: without this, every bounce loses some two parts in a hundred in Sponza.
 #pragma once
 
 #include "engine/graph/node.h"
@@ -35,7 +35,7 @@ class Bounce : public graph::Node {
  public:
   static constexpr std::string_view kType = "clustered_voxel.bounce";
   enum class Solver : uint32_t { Chebyshev, Plain };
-  enum class Last : uint32_t { Faces, Clusters };
+  enum class Last : uint32_t { Faces, Clusters, Auto };
 
   Bounce();
   std::string_view type() const override { return kType; }

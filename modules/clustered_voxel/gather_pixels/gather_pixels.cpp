@@ -44,9 +44,12 @@ GatherPixels::GatherPixels()
                             {"0", "2", "4", "8"}, "4096"),
               params::flag("shadow", &shadow_, "hits on near triangles look their direct light up in the shadow maps",
                            params::Invalidates::Plan),
-              params::swept(params::number("smooth", &smooth_, {0, 4}, "extra passes of the edge-stopping filter, each twice as wide",
-                                           params::Invalidates::Plan),
-                            {"0", "1", "2"}, "0")}) {}
+              params::swept(
+                  params::number(
+                      "smooth", &smooth_, {0, 4},
+                      "extra passes of the filter, each twice as wide; they stop at edges, and where light differs by more than its noise",
+                      params::Invalidates::Plan),
+                  {"0", "1", "2", "3"}, "0")}) {}
 
 void GatherPixels::declare(graph::Declaration& d) {
   const Shape image = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
@@ -84,20 +87,22 @@ void GatherPixels::declare(graph::Declaration& d) {
   }
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   readSkyImage(d);
-  readUnderImage(d, "scene.info", "sky radiance");
+  d.readIf(d.traits.hasSky(), "scene.info", "sky radiance", "the scene has no sky");
   d.write("sky", image, "E_sky, W/m², of a sky with an image; 0 on the sky").optional = true;
   readEmission(d, "emission", "mean B_e of each face, W/m²");
   d.write("emitted", image, "irradiance from emitters, found by the rays, W/m²; 0 on the sky").optional = true;
-  if (d.traits.hasEmissionByRays()) {
-    d.scratch("raw_emitted", image, "the emitters' from each pixel's own rays");
-    if (smooth_ > 0) d.scratch("between_emitted", image, "the emitters' between filter passes");
-  }
-  if (d.traits.skyImage) {
-    d.scratch("raw_sky", image, "E_sky from each pixel's own rays");
-    if (smooth_ > 0) d.scratch("between_sky", image, "E_sky between filter passes");
-  }
-  d.scratch("raw", image, "E_indirect from each pixel's own rays");
-  if (smooth_ > 0) d.scratch("between", image, "E_indirect between filter passes");
+  // A filter of several passes knows the noise of what it smooths.
+  const Shape spread = Shape::buffer(sizeof(float), Extent::of("width") * "height");
+  if (smooth_ > 0) d.scratch("between_spread", spread, "variance of luminance between filter passes");
+  const auto raw = [&](const std::string& suffix, const std::string& what) {
+    d.scratch("raw" + suffix, image, what + " from each pixel's own rays");
+    if (smooth_ == 0) return;
+    d.scratch("between" + suffix, image, what + " between filter passes");
+    d.scratch("spread" + suffix, spread, "of each pixel's rays the mean square of luminance; then the variance between filter passes");
+  };
+  if (d.traits.hasEmissionByRays()) raw("_emitted", "the emitters'");
+  if (d.traits.skyImage) raw("_sky", "E_sky");
+  raw("", "E_indirect");
 }
 
 void GatherPixels::prepare(graph::PrepareContext& context) {
@@ -111,6 +116,7 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
   hasShadow_ = context.has("shadow_depth");
   hasSky_ = context.has("sky") && context.has("scene.sky");
+  hasEvenSky_ = !context.traits().skyImage && context.has("scene.info");
   hasEmitted_ = context.has("emitted") && context.has("emission");
   std::vector<BindingType> bindings(32, kB);
   for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
@@ -118,7 +124,7 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   const auto trace = [&](uint32_t skip) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
                                                           .bindings = bindings,
-                                                          .pushConstantBytes = 56,
+                                                          .pushConstantBytes = 80,
                                                           .constants = {{0, skip},
                                                                         {1, hasTriangles_ ? 1u : 0u},
                                                                         {2, isMasked_ ? 1u : 0u},
@@ -126,13 +132,22 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
                                                                         {4, context.has("corners") ? 1u : 0u},
                                                                         {5, context.has("sky_irradiance") ? 1u : 0u},
                                                                         {6, hasSky_ ? 1u : 0u},
-                                                                        {7, hasEmitted_ ? 1u : 0u}}});
+                                                                        {7, hasEmitted_ ? 1u : 0u},
+                                                                        {8, smooth_ > 0 ? 1u : 0u},
+                                                                        {9, hasEvenSky_ ? 1u : 0u},
+                                                                        {10, context.request().wantsIndirect() ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
-  filter_ = gpu::Pipeline(
-      device, gpu::ComputePipelineInfo{
-                  .shader = "clustered_voxel/gather_pixels/filter.comp", .bindings = {kB, kI, kI, kI, kI}, .pushConstantBytes = 16});
+  const auto filter = [&](bool light, bool evenSky) {
+    return gpu::Pipeline(device,
+                         gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/filter.comp",
+                                                  .bindings = {kB, kI, kI, kI, kI, kB, kB, kB},
+                                                  .pushConstantBytes = 20,
+                                                  .constants = {{0, smooth_ > 0 ? 1u : 0u}, {1, evenSky ? 1u : 0u}, {2, light ? 1u : 0u}}});
+  };
+  filter_ = filter(context.request().wantsIndirect(), hasEvenSky_);
+  if (hasSky_ || hasEmitted_) lightFilter_ = filter(true, false);
 }
 
 void GatherPixels::record(graph::RecordContext& context) {
@@ -140,11 +155,12 @@ void GatherPixels::record(graph::RecordContext& context) {
   const gpu::Image& position = context.image("position");
   const gpu::Image& normal = context.image("normal");
   const gpu::Image& raw = context.image("raw");
+  const auto spread = [&](const char* name, bool present) { return smooth_ > 0 && present ? context.buffer(name).address() : 0; };
   struct {
     uint32_t width, height, rays, firstRay, endRay, voxelCount;
     float near;
     uint32_t lightCount;
-    VkDeviceAddress sky, skyInfo, emission;
+    VkDeviceAddress sky, skyInfo, emission, squares, skySquares, emittedSquares;
   } push{raw.info().width,
          raw.info().height,
          rays_,
@@ -154,8 +170,11 @@ void GatherPixels::record(graph::RecordContext& context) {
          near_,
          hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u,
          hasSky_ ? context.buffer("scene.sky").address() : 0,
-         hasSky_ ? context.buffer("scene.info").address() : 0,
-         hasEmitted_ ? context.buffer("emission").address() : 0};
+         hasSky_ || hasEvenSky_ ? context.buffer("scene.info").address() : 0,
+         hasEmitted_ ? context.buffer("emission").address() : 0,
+         spread("spread", true),
+         spread("spread_sky", hasSky_),
+         spread("spread_emitted", hasEmitted_)};
   // No planes where there are no voxels.
   const std::vector<const gpu::Buffer*> planes = context.grown("planes");
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
@@ -203,27 +222,34 @@ void GatherPixels::record(graph::RecordContext& context) {
     commands.dispatchItems(blocks * kBlock * kBlock, 64);
   }
 
-  filter(context, "raw", "between", "irradiance");
-  if (hasSky_) filter(context, "raw_sky", "between_sky", "sky");
-  if (hasEmitted_) filter(context, "raw_emitted", "between_emitted", "emitted");
+  filter(context, "", "irradiance");
+  if (hasSky_) filter(context, "_sky", "sky");
+  if (hasEmitted_) filter(context, "_emitted", "emitted");
 }
 
-void GatherPixels::filter(graph::RecordContext& context, const char* raw, const char* between, const char* outName) {
+void GatherPixels::filter(graph::RecordContext& context, const std::string& suffix, const char* outName) {
   gpu::Commands& commands = context.commands();
-  const gpu::Image& position = context.image("position");
-  const gpu::Image& normal = context.image("normal");
+  const gpu::Buffer& grid = context.buffer("grid");
+  const bool evenSky = hasEvenSky_ && suffix.empty();
   const gpu::Image& out = context.image(outName);
-  const gpu::Image* from = &context.image(raw);
+  const gpu::Image* from = &context.image("raw" + suffix);
+  const gpu::Buffer* spreads[2] = {&grid, &grid};  // where nothing is smoothed, another buffer takes their bindings
+  if (smooth_ > 0) {
+    spreads[0] = &context.buffer("spread" + suffix);
+    spreads[1] = &context.buffer("between_spread");
+  }
   for (uint32_t pass = 0; pass <= smooth_; ++pass) {
     commands.barrier();
-    // Ends in `irradiance` whatever the number of passes.
-    const gpu::Image& to = (smooth_ - pass) % 2 == 0 ? out : context.image(between);
-    commands.bind(filter_, {context.buffer("grid"), position, normal, *from, to});
+    // Ends in `out` whatever the number of passes.
+    const gpu::Image& to = (smooth_ - pass) % 2 == 0 ? out : context.image("between" + suffix);
+    commands.bind(suffix.empty() ? filter_ : lightFilter_,
+                  {grid, context.image("position"), context.image("normal"), *from, to, *spreads[pass % 2], *spreads[1 - pass % 2],
+                   evenSky ? context.buffer("scene.info") : grid});
     struct {
-      uint32_t width, height, pass, step;
-    } filterPush{out.info().width, out.info().height, pass, pass == 0 ? 1u : kBlock << (pass - 1)};
-    commands.push(filterPush);
-    commands.dispatchItems(uint64_t{filterPush.width} * filterPush.height, 64);
+      uint32_t width, height, pass, step, rays;
+    } push{out.info().width, out.info().height, pass, pass == 0 ? 1u : kBlock << (pass - 1), rays_};
+    commands.push(push);
+    commands.dispatchItems(uint64_t{push.width} * push.height, 64);
     from = &to;
   }
 }

@@ -52,6 +52,10 @@ layout(set = 0, binding = 31, rgba32f) uniform image2D rawSkyImage;
 layout(constant_id = 7) const bool kEmitted = false;  // emitters light through these rays, and no other way
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Emission { vec3 of[]; };
 layout(set = 0, binding = 30, rgba32f) uniform image2D rawEmittedImage;
+layout(constant_id = 8) const bool kSpread = false;   // the filter asks how much the rays of a pixel differ
+layout(constant_id = 9) const bool kEvenSky = false;  // a sky without an image, whose light comes by rays that leave the scene
+layout(constant_id = 10) const bool kIndirect = true;  // light from surfaces is asked for
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Squares { float of[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
@@ -64,12 +68,16 @@ layout(push_constant, scalar) uniform Push {
   uvec2 sky;           // address of scene.sky
   uvec2 skyInfo;       // of scene.info
   uvec2 emission;      // of B_e of each face
+  uvec2 squares;       // of the mean squares of what each pixel's rays bring (luminance): all but images' and emitters' light,
+  uvec2 skySquares;    // the sky image's light,
+  uvec2 emittedSquares;  // emitters'
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_walk.glsl"
 #include "shared/light.glsl"
 #include "shared/shadow_lookup.glsl"
 #include "shared/sky.h"
+#include "clustered_voxel/gather_pixels/spread.glsl"
 
 // Direct irradiance at a point of a triangle, as one texel of each shadow map has it. n: unit, on the side that is looked at.
 vec3 directIrradiance(vec3 p, vec3 n, uint triangle) {
@@ -133,6 +141,12 @@ void main() {
   vec4 sum = goesOn ? imageLoad(rawImage, ivec2(pixel)) : vec4(0.0);
   vec3 skySum = kSkyImage && goesOn ? imageLoad(rawSkyImage, ivec2(pixel)).xyz : vec3(0.0);
   vec3 emittedSum = kEmitted && goesOn ? imageLoad(rawEmittedImage, ivec2(pixel)).xyz : vec3(0.0);
+  uint cell = pixel.y * width + pixel.x;
+  bool addsSquares = kSpread && goesOn;
+  float squareSum = addsSquares ? Squares(squares).of[cell] : 0.0;
+  float skySquareSum = addsSquares && kSkyImage ? Squares(skySquares).of[cell] : 0.0;
+  float emittedSquareSum = addsSquares && kEmitted ? Squares(emittedSquares).of[cell] : 0.0;
+  float evenSky = kSpread && kEvenSky ? 3.14159265358979 * luminanceOf(InfoAt(skyInfo).info.skyRadiance) : 0.0;
   for (uint ray = firstRay; ray < end; ++ray) {
     vec2 square = fract(directions[place * rays + ray] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
@@ -149,18 +163,33 @@ void main() {
       if (kSky) change += skyIrradiance[face];
       radiosity = max(radiosity + decodeAlbedo(faceAt(face).albedo) * change, vec3(0.0));
     }
-    sum.xyz += isFace ? radiosity : vec3(0.0);
-    if (kEmitted && isFace) emittedSum += Emission(emission).of[face];
+    vec3 emitted = kEmitted && isFace ? Emission(emission).of[face] : vec3(0.0);
     bool missed = hit.face == kHitNothing;
-    sum.w += missed ? 1.0 : 0.0;
+    vec3 skyLight = vec3(0.0);
     if (kSkyImage && missed) {
       SceneInfo info = InfoAt(skyInfo).info;
-      skySum += info.skyRadiance + SkyValues(sky).values[skyCell(way.direction, info.skyTurn)];
+      skyLight = info.skyRadiance + SkyValues(sky).values[skyCell(way.direction, info.skyTurn)];
+    }
+    sum += vec4(isFace ? radiosity : vec3(0.0), missed ? 1.0 : 0.0);
+    skySum += skyLight;
+    emittedSum += emitted;
+    if (kSpread) {
+      float arriving = missed ? evenSky : isFace && kIndirect ? luminanceOf(radiosity) : 0.0;
+      squareSum += arriving * arriving;
+      float arrivingSky = 3.14159265358979 * luminanceOf(skyLight), arrivingEmitted = luminanceOf(emitted);
+      skySquareSum += arrivingSky * arrivingSky;
+      emittedSquareSum += arrivingEmitted * arrivingEmitted;
     }
   }
   if (!isPixel) return;
   bool done = endRay == rays;
   if (kSkyImage) imageStore(rawSkyImage, ivec2(pixel), vec4(done ? 3.14159265358979 / float(rays) * skySum : skySum, 0.0));
   if (kEmitted) imageStore(rawEmittedImage, ivec2(pixel), vec4(done ? emittedSum / float(rays) : emittedSum, 0.0));
+  if (kSpread) {
+    float share = done ? 1.0 / float(rays) : 1.0;
+    Squares(squares).of[cell] = share * squareSum;
+    if (kSkyImage) Squares(skySquares).of[cell] = share * skySquareSum;
+    if (kEmitted) Squares(emittedSquares).of[cell] = share * emittedSquareSum;
+  }
   imageStore(rawImage, ivec2(pixel), done ? sum / float(rays) : sum);
 }

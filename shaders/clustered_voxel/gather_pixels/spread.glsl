@@ -1,0 +1,7 @@
+// What trace.comp and filter.comp measure the noise of.
+#ifndef RADIVOX_CLUSTERED_VOXEL_GATHER_PIXELS_SPREAD_GLSL
+#define RADIVOX_CLUSTERED_VOXEL_GATHER_PIXELS_SPREAD_GLSL
+
+float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+
+#endif
