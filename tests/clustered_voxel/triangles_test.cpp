@@ -201,14 +201,45 @@ Answer isApart(const PieceSide& leader, const PieceSide& piece) {
   return (a > 0.01) != (b > 0.01) ? Answer::Yes : Answer::No;
 }
 
+/// Does `other` stand before `side`, looking the same way, where a line from its middle along its normal meets it in the voxel?
+Answer covers(const PieceSide& other, const PieceSide& side, const oracle::Corners& corners, const glm::dvec3& low) {
+  constexpr double kNear = 4e-3;
+  const auto answer = [](double value, double least, double slack) {
+    return value < least - slack ? Answer::No : value > least + slack ? Answer::Yes : Answer::Unsure;
+  };
+  const double slope = glm::dot(other.normal, side.normal);
+  std::vector<Answer> all = {answer(slope, 0.5, 2e-3), answer(glm::dot(other.middle - side.middle, side.normal), 0.01, kNear)};
+  if (all[0] == Answer::No) return Answer::No;
+  const double t = glm::dot(corners[0] - side.middle, other.normal) / slope;
+  all.push_back(answer(t, 0.01, kNear));
+  const glm::dvec3 hit = side.middle + t * side.normal;
+  for (int k = 0; k < 3; ++k) {
+    all.push_back(answer(hit[k] - low[k], 0, kNear));
+    all.push_back(answer(low[k] + 1 - hit[k], 0, kNear));
+  }
+  const glm::dvec3 front = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+  for (int c = 0; c < 3; ++c) {
+    const glm::dvec3 edge = glm::normalize(corners[(c + 1) % 3] - corners[c]);
+    all.push_back(answer(glm::dot(glm::cross(edge, hit - corners[c]), front), 0, kNear));
+  }
+  if (std::find(all.begin(), all.end(), Answer::No) != all.end()) return Answer::No;
+  return std::find(all.begin(), all.end(), Answer::Unsure) != all.end() ? Answer::Unsure : Answer::Yes;
+}
+
+oracle::Corners cornersInGrid(const scene::Scene& scene, const Lists& lists, uint32_t triangle) {
+  oracle::Corners corners;
+  for (int c = 0; c < 3; ++c)
+    corners[c] =
+        (glm::dvec3(scene.vertices[scene.indices[3 * triangle + c]].position) - glm::dvec3(lists.grid.origin)) / double(lists.grid.h);
+  return corners;
+}
+
 std::vector<PieceSide> sidesIn(const scene::Scene& scene, const Lists& lists, size_t v) {
   std::vector<PieceSide> sides;
   const glm::dvec3 low(shared::unpackVoxel(lists.voxels[v]));
   for (uint32_t e = lists.first[v]; e < lists.first[v + 1]; ++e) {
-    oracle::Corners corners;
     const uint32_t t = lists.ids[e];
-    for (int c = 0; c < 3; ++c)
-      corners[c] = (glm::dvec3(scene.vertices[scene.indices[3 * t + c]].position) - glm::dvec3(lists.grid.origin)) / double(lists.grid.h);
+    const oracle::Corners corners = cornersInGrid(scene, lists, t);
     PieceSide side;
     side.entry = e;
     side.corners = oracle::clipToVoxel(corners, low);
@@ -224,7 +255,7 @@ std::vector<PieceSide> sidesIn(const scene::Scene& scene, const Lists& lists, si
 }
 
 TEST_F(TrianglesTest, PiecesAcrossAWallAreNoPartOfAFace) {
-  size_t apartCount[2] = {}, checked = 0, unsure = 0;
+  size_t apartCount[2] = {}, checked = 0, unsure = 0, covered = 0;
   const auto scenesOf = [](bool dominant) {
     return std::vector{roomOfSkins(0.3f, 20, false, dominant), roomOfSkins(0.5f, 20, true, dominant), randomScene(7, 60)};
   };
@@ -251,32 +282,55 @@ TEST_F(TrianglesTest, PiecesAcrossAWallAreNoPartOfAFace) {
         }
         std::vector<uint32_t> expected(lists.first[v + 1] - lists.first[v]);
         std::vector<bool> isUnsure(expected.size());
-        for (const PieceSide& side : sides) {
-          const size_t i = side.entry - lists.first[v];
-          uint32_t leaves = 0;
-          bool stays = dominant;  // of the one face that it would be part of a piece may leave
-          for (int k = 0; k < 3; ++k) {
-            const int f = side.faceOn(k);
-            if (leader[f] == nullptr || oracle::faceShare(side.normal, k, dominant) == 0) continue;
-            // A tie of two leaders may fall either way.
-            if (most[f] < 1e-3 || second[f] > 0.999 * most[f] || side.area < 1e-4) isUnsure[i] = true;
-            const Answer answer = leader[f]->entry == side.entry ? Answer::No : isApart(*leader[f], side);
-            if (answer == Answer::Unsure) isUnsure[i] = true;
-            if (answer == Answer::Yes)
-              leaves |= 1u << f;
-            else
-              stays = true;
-          }
-          if (stays) expected[i] |= leaves;
-        }
-        // Surfaces all within 30 degrees of the first are one that bends; none of them is apart, but for backs of double-sided ones.
-        bool bends = true;
+        // Surfaces all within 30 degrees of the first are one that bends: no wall stands between them. Where they lie on one plane, none covers another.
+        bool bends = true, layered = false, isLayeredUnsure = false;
         for (const PieceSide& side : sides) {
           const double cosine = std::abs(glm::dot(side.normal, sides[0].normal));
           bends = bends && cosine > 0.87;
           if (std::abs(cosine - 0.87) < 1e-4) isUnsure.assign(isUnsure.size(), true);
+          const double step = std::abs(glm::dot(side.middle - sides[0].middle, sides[0].normal));
+          layered = layered || step > 0.014;
+          isLayeredUnsure = isLayeredUnsure || step > 0.006;
         }
-        if (bends || expected.size() > 64) expected.assign(expected.size(), 0);
+        for (const PieceSide& side : sides) {
+          const size_t i = side.entry - lists.first[v];
+          uint32_t covering = 0, perhaps = 0;
+          for (const PieceSide& other : sides) {
+            if (other.entry == side.entry) continue;
+            const Answer answer =
+                covers(other, side, cornersInGrid(scene, lists, lists.ids[other.entry]), glm::dvec3(shared::unpackVoxel(lists.voxels[v])));
+            for (int k = 0; k < 3; ++k) {
+              if (oracle::faceShare(other.normal, k, dominant) == 0) continue;
+              covering |= answer == Answer::Yes ? 1u << other.faceOn(k) : 0u;
+              perhaps |= answer == Answer::Unsure ? 1u << other.faceOn(k) : 0u;
+            }
+          }
+          if (!layered) {
+            perhaps |= isLayeredUnsure ? covering : 0u;
+            covering = 0;
+          }
+          uint32_t leaves = 0;
+          bool stays = dominant;  // of the one face that it would be part of a piece may leave
+          for (int k = 0; k < 3; ++k) {
+            const int f = side.faceOn(k);
+            if (oracle::faceShare(side.normal, k, dominant) == 0) continue;
+            bool leavesIt = (covering >> f & 1u) != 0;
+            if (!leavesIt && (perhaps >> f & 1u) != 0) isUnsure[i] = true;
+            if (leader[f] != nullptr && !bends) {
+              // A tie of two leaders may fall either way.
+              if (!leavesIt && (most[f] < 1e-3 || second[f] > 0.999 * most[f])) isUnsure[i] = true;
+              const Answer answer = leader[f]->entry == side.entry ? Answer::No : isApart(*leader[f], side);
+              if (!leavesIt && answer == Answer::Unsure) isUnsure[i] = true;
+              leavesIt = leavesIt || answer == Answer::Yes;
+            }
+            if (side.area < 1e-4) isUnsure[i] = true;
+            covered += (covering >> f & 1u) != 0;
+            leaves |= leavesIt ? 1u << f : 0u;
+            stays = stays || !leavesIt;
+          }
+          if (stays) expected[i] |= leaves;
+        }
+        if (expected.size() > 64) expected.assign(expected.size(), 0);
         for (size_t i = 0; i < expected.size(); ++i) {
           const size_t e = lists.first[v] + i;
           const uint32_t flags = scene.materials[scene.triangleMaterials[lists.ids[e]]].flags;
@@ -293,7 +347,9 @@ TEST_F(TrianglesTest, PiecesAcrossAWallAreNoPartOfAFace) {
   EXPECT_GT(apartCount[0], 200u);
   EXPECT_GT(apartCount[1], 50u);
   EXPECT_GT(checked, 4 * unsure);
-  std::printf("%zu pieces checked, %zu and %zu of them apart; %zu too close to tell\n", checked, apartCount[0], apartCount[1], unsure);
+  EXPECT_GT(covered, 500u);
+  std::printf("%zu pieces checked, %zu and %zu of them apart, %zu covered; %zu too close to tell\n", checked, apartCount[0], apartCount[1],
+              covered, unsure);
 }
 
 // What surface makes of them: area of a face is that of the pieces that are part of it.

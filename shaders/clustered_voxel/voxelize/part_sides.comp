@@ -101,6 +101,44 @@ bool isApart(Side leader, Side piece, vec3 voxel) {
 
 uint faceTowards(vec3 n, uint k) { return 2u * k + (n[k] < 0.0 ? 1u : 0u); }
 
+// Faces of pieces that hide x, the middle of a piece with normal n, from above: they look the same way, and stand before it in the voxel.
+uint coveringFaces(uint begin, uint end, vec3 n, vec3 x, vec3 voxel, bool dominant) {
+  uint faces = 0u;
+  for (uint e = begin; e < end; ++e) {
+    precise vec3 ahead = decodePosition(pieces[e].x) - x;
+    if (triangleDot(ahead, n) <= kApartSlack) continue;
+    uint other = listedTriangle(triangleIds[e]);
+    uint flags = materials[triangleMaterials[other]].flags;
+    if ((flags & kMaterialAlphaMask) != 0u) continue;
+    vec3 front = triangleNormal(other);
+    bool turned = (flags & kMaterialDoubleSided) != 0u && triangleDot(front, n) < 0.0;
+    vec3 m = turned ? -front : front;
+    float slope = triangleDot(m, n);
+    if (slope <= kApartCosine) continue;
+    vec3 p[3];
+    for (uint c = 0u; c < 3u; ++c) {
+      precise vec3 at = toGridSpace(grid, vertices[indices[3u * other + c]].position) - voxel - x;
+      p[c] = at;
+    }
+    // x + t n on the plane of `other`: t = (p · m) / (n · m).
+    precise float t = triangleDot(p[0], m) * preciseReciprocal(slope);
+    if (t <= kApartSlack) continue;
+    precise vec3 hit = t * n;
+    if (any(lessThan(x + hit, vec3(0.0))) || any(greaterThan(x + hit, vec3(1.0)))) continue;
+    bool covers = true;
+    for (uint c = 0u; c < 3u; ++c) {
+      vec3 a = p[c];
+      precise vec3 d = p[(c + 1u) % 3u] - a;
+      precise vec3 q = hit - a;
+      precise vec3 across = vec3(d.y * q.z - d.z * q.y, d.z * q.x - d.x * q.z, d.x * q.y - d.y * q.x);
+      covers = covers && triangleDot(across, front) >= 0.0;
+    }
+    vec3 shares = faceShares(m, dominant);
+    for (uint k = 0u; k < 3u; ++k) faces |= covers && shares[k] > 0.0 ? 1u << faceTowards(m, k) : 0u;
+  }
+  return faces;
+}
+
 void main() {
   uint voxel = radivoxItemIndex();
   if (voxel >= voxelCount) return;
@@ -109,8 +147,13 @@ void main() {
   // Most voxels hold one surface, or one that bends.
   vec3 first = triangleNormal(triangleIds[begin]);
   bool bends = true;
-  for (uint e = begin + 1u; e < end && bends; ++e) bends = abs(triangleDot(triangleNormal(triangleIds[e]), first)) > kBendCosine;
-  if (bends) return;
+  bool layered = false;
+  for (uint e = begin + 1u; e < end; ++e) {
+    bends = bends && abs(triangleDot(triangleNormal(triangleIds[e]), first)) > kBendCosine;
+    precise vec3 step = decodePosition(pieces[e].x) - decodePosition(pieces[begin].x);
+    layered = layered || abs(triangleDot(step, first)) > kApartSlack;
+  }
+  if (bends && !layered) return;
   bool dominant = grid.dominant != 0u;
   vec3 voxelCorner = vec3(unpackVoxel(voxels[voxel]));
   float most[kFaceCount];
@@ -120,7 +163,7 @@ void main() {
     most[f] = kLeastLeader;
     leader[f] = kNone;
   }
-  for (uint e = begin; e < end; ++e) {
+  for (uint e = begin; e < end && !bends; ++e) {
     uint flags = materials[triangleMaterials[triangleIds[e]]].flags;
     // How much of a piece an alpha mask leaves is not known here.
     if ((flags & kMaterialAlphaMask) != 0u) continue;
@@ -152,10 +195,12 @@ void main() {
       uint leaves = 0u;
       bool stays = dominant;  // of several faces, a piece that none would keep stays in all
       vec3 shares = faceShares(n, dominant);
+      uint covering = layered ? coveringFaces(begin, end, n, middle, voxelCorner, dominant) : 0u;
       for (uint k = 0u; k < 3u; ++k) {
         uint f = faceTowards(n, k);
-        if (shares[k] == 0.0 || leader[f] == kNone) continue;
-        bool leavesIt = leader[f] != e && isApart(sides[f], Side(id, n, middle), voxelCorner);
+        if (shares[k] == 0.0) continue;
+        bool leavesIt = leader[f] != kNone && leader[f] != e && isApart(sides[f], Side(id, n, middle), voxelCorner);
+        leavesIt = leavesIt || ((covering >> f) & 1u) != 0u;
         leaves |= leavesIt ? 1u << f : 0u;
         stays = stays || !leavesIt;
       }
