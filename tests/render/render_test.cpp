@@ -1,6 +1,7 @@
 // End to end: whole renders against answers known in closed form, and what must hold of every render.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -243,6 +244,72 @@ TEST_F(Render, PixelReceiverIsExactInAFurnace) {
     ASSERT_NEAR(irradiance.data[i], 0.5f, 1e-3f) << "pixel " << i / 4;
     ASSERT_EQ(irradiance.data[i + 3], 0.f) << "a ray left the closed box from pixel " << i / 4;
   }
+}
+
+/// Median of what two pictures differ by where the second is lit, as a share of it, and the ratio of their sums.
+std::pair<double, double> difference(const image::Image& a, const image::Image& b) {
+  std::vector<double> shares;
+  double sumA = 0, sumB = 0;
+  for (size_t i = 0; i < a.data.size(); ++i) {
+    if (b.data[i] > 0.f) shares.push_back(std::abs(double{a.data[i]} - double{b.data[i]}) / double{b.data[i]});
+    sumA += a.data[i];
+    sumB += b.data[i];
+  }
+  std::sort(shares.begin(), shares.end());
+  return {shares.empty() ? 0 : shares[shares.size() / 2], sumA / sumB};
+}
+
+// What the filter's wider passes take away is noise: few rays come nearer to many, the light of all pixels stays, and many rays hardly change. By light of
+// surfaces, of a sky, of a sky's image and of emitters that rays find, each of which has a filter of its own.
+TEST_F(Render, SlowSmoothingTakesNoiseAndLeavesLight) {
+  struct Case {
+    const char* name;
+    scene::Scene scene;
+    const char* port;
+    uint32_t emitterSamples;
+  };
+  scene::Scene sky = scene::makeBuiltin("atrium"), image = scene::loadScene("builtin:atrium", "builtin:clear");
+  sky.lights.clear();
+  sky.skyRadiance = glm::vec3(1.f);
+  for (const Case& c : {Case{"surfaces", scene::makeBuiltin("cornell_point"), "gather_pixels.irradiance", 32},
+                        Case{"a sky", sky, "composite.color", 32}, Case{"a sky's image", image, "gather_pixels.sky", 32},
+                        Case{"emitters", scene::makeBuiltin("cornell"), "gather_pixels.emitted", 0}}) {
+    SCOPED_TRACE(c.name);
+    const auto picture = [&](uint32_t rays, uint32_t smooth) {
+      PipelineOptions options = small(32);
+      options.graph = "clustered_voxel_pixels";
+      options.width = 128;
+      options.height = 96;
+      options.lights.emitterSamples = c.emitterSamples;
+      options.settings.insert(options.settings.end(),
+                              {{"gather_pixels.rays", std::to_string(rays)}, {"gather_pixels.smooth", std::to_string(smooth)}});
+      options.outputs = {"composite.color", c.port};
+      Pipeline p(oracles::sharedDevice(), c.scene, options);
+      p.run();
+      return p.picture(c.port);
+    };
+    const image::Image truth = picture(256, 0);
+    const auto raw = difference(picture(4, 0), truth), smooth = difference(picture(4, 3), truth),
+               sharp = difference(picture(256, 3), truth);
+    std::printf("%s: median error of 4 rays %.4f, smoothed %.4f (sums %.4f, %.4f of the truth), of 256 rays smoothed %.4f\n", c.name,
+                raw.first, smooth.first, raw.second, smooth.second, sharp.first);
+    EXPECT_LT(smooth.first, 0.93 * raw.first);
+    EXPECT_NEAR(smooth.second, raw.second, 3e-3);
+    EXPECT_LT(sharp.first, 0.1 * raw.first);
+  }
+}
+
+// A lamp a centimetre below a ceiling, voxels of nine: the ceiling right behind it is no part of the face that shines.
+TEST_F(Render, SlowALampCloseToAWallShinesInFull) {
+  const auto render = [&](uint32_t emitterSamples) {
+    PipelineOptions options = small(64);
+    options.graph = "clustered_voxel_pixels";
+    options.lights.emitterSamples = emitterSamples;
+    Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell"), options);
+    p.run();
+    return p.picture("composite.color");
+  };
+  EXPECT_NEAR(difference(render(0), render(64)).second, 1.0, 0.04);
 }
 
 // The paper's 18 points lie all about the voxel: below a plane they are in its shadow, so it finds part of the light, and never more than there is.

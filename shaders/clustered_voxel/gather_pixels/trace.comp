@@ -104,7 +104,7 @@ void frameOf(vec3 n, out vec3 t, out vec3 b) {
   b = vec3(c, s + n.y * n.y * a, -n.y);
 }
 
-// Blocks side by side with one shift: as many as lanes walk together, so that they walk the same way.
+// Blocks side by side with nearly one shift: as many as lanes walk together, so that they walk the same way.
 const uint kShiftRun = 8u;
 const float kNearLift = 1e-3;  // voxels
 
@@ -136,6 +136,9 @@ void main() {
   // Every block has a shift of its own: the same directions everywhere would miss the same things everywhere.
   uint hashed = hashBits(block / kShiftRun + 0x68bc21ebu);
   vec2 shift = vec2(uvec2(hashed, hashBits(hashed)) >> 8) * (1.0 / 16777216.0);
+  // Within a run as far as directions are from one another: what one block misses the next meets, and lanes hardly part.
+  uint inRun = block % kShiftRun;
+  shift += (vec2(float(inRun), float(bitfieldReverse(inRun) >> 29)) + 0.5) * (inversesqrt(16.0 * float(rays)) / float(kShiftRun));
 
   bool goesOn = firstRay > 0u && end > 0u;
   vec4 sum = goesOn ? imageLoad(rawImage, ivec2(pixel)) : vec4(0.0);
