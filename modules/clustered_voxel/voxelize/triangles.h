@@ -15,9 +15,10 @@
 //
 // apart: where thin walls meet, one voxel face would be made of the inner side of one wall and of the outer side of the other, and carry the light of
 // one to the other. Of each face the piece with the largest area · |n·e_f| leads; pieces more than 60 degrees from it leave the face
-// where just one of the two reaches in front of the other's plane inside the voxel. (In a room's corner both do, on a block's neither.) A piece
-// that all its faces would lose stays in all; alpha-masked surface neither leads nor leaves, nor does any in voxels of more than 64 triangles. Faces
-// (surface), rays that start and end on pieces (visibility, gather_pixels) and light that falls on them (inject) all go by it.
+// where just one of the two reaches in front of the other's plane inside the voxel. (In a room's corner both do, on a block's neither.) A piece also
+// leaves where another piece of the face, within 60 degrees of its direction, covers its middle inside the voxel, as a lamp does the ceiling right behind it.
+// A piece that all its faces would lose stays in all; alpha-masked surface neither leads, covers nor leaves, nor does any in voxels of more than 64
+// triangles. Faces (surface), rays that start and end on pieces (visibility, gather_pixels) and light that falls on them (inject) all go by it.
 #pragma once
 
 #include "modules/clustered_voxel/voxelize/triangle_pass.h"

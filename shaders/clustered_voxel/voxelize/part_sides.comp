@@ -6,7 +6,7 @@
 // Where thin walls meet, a voxel face looks at the inner side of one and at the outer side of the other: a mean of both would carry the light of one
 // side to the other. So the largest piece of a face leads it, and pieces across a wall from the leader are no part of the face. Surfaces that
 // bound the same space each reach in front of the other (a corner of a room), or neither does (a corner of a block); where only one does, something
-// solid lies between.
+// solid lies between. And what is hidden right behind another piece of its face is no part of it: it is never lit, and would dim all the face sends.
 #include "shared/dispatch.glsl"
 #include "shared/face_shares.h"
 #include "shared/listed_triangle.h"
