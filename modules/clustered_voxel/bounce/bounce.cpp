@@ -72,7 +72,8 @@ void Bounce::declare(graph::Declaration& d) {
   const bool toFaces = last_ == Last::Faces || (last_ == Last::Auto && d.traits.sky);
   const bool needsRows = bounces > 1 && toFaces;
   for (const char* name : {"visibility_row_start", "visibility_entries", "chunk_table"})
-    d.readIf(needsRows, name, "rows of the faces", bounces > 1 ? "the last bounce goes to clusters" : "one bounce needs no light between clusters");
+    d.readIf(needsRows, name, "rows of the faces",
+             bounces > 1 ? "the last bounce goes to clusters" : "one bounce needs no light between clusters");
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("labels", "cluster id of each face");
