@@ -87,18 +87,20 @@ void GatherPixels::declare(graph::Declaration& d) {
   }
   d.write("irradiance", image, "E_indirect, W/m²; a: sky visibility; 0 on the sky");
   readSkyImage(d);
-  d.readIf(d.traits.hasSky(), "scene.info", "sky radiance", "the scene has no sky");
+  readUnderImage(d, "scene.info", "sky radiance");
   d.write("sky", image, "E_sky, W/m², of a sky with an image; 0 on the sky").optional = true;
   readEmission(d, "emission", "mean B_e of each face, W/m²");
   d.write("emitted", image, "irradiance from emitters, found by the rays, W/m²; 0 on the sky").optional = true;
   // A filter of several passes knows the noise of what it smooths.
-  const Shape spread = Shape::buffer(sizeof(float), Extent::of("width") * "height");
-  if (smooth_ > 0) d.scratch("between_spread", spread, "variance of luminance between filter passes");
+  const auto spread = [](bool evenSky) { return Shape::buffer((evenSky ? 2 : 1) * sizeof(float), Extent::of("width") * "height"); };
+  const bool evenSky = d.traits.sky && !d.traits.skyImage;
+  if (smooth_ > 0) d.scratch("between_spread", spread(evenSky), "variance of luminance between filter passes, and of sky visibility");
   const auto raw = [&](const std::string& suffix, const std::string& what) {
     d.scratch("raw" + suffix, image, what + " from each pixel's own rays");
     if (smooth_ == 0) return;
     d.scratch("between" + suffix, image, what + " between filter passes");
-    d.scratch("spread" + suffix, spread, "of each pixel's rays the mean square of luminance; then the variance between filter passes");
+    d.scratch("spread" + suffix, spread(evenSky && suffix.empty()),
+              "of each pixel's rays the mean square of luminance; then the variance between filter passes");
   };
   if (d.traits.hasEmissionByRays()) raw("_emitted", "the emitters'");
   if (d.traits.skyImage) raw("_sky", "E_sky");
@@ -116,7 +118,7 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   isMasked_ = hasTriangles_ && context.traits().alphaMasked;
   hasShadow_ = context.has("shadow_depth");
   hasSky_ = context.has("sky") && context.has("scene.sky");
-  hasEvenSky_ = !context.traits().skyImage && context.has("scene.info");
+  hasEvenSky_ = context.traits().sky && !context.traits().skyImage;
   hasEmitted_ = context.has("emitted") && context.has("emission");
   std::vector<BindingType> bindings(32, kB);
   for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
@@ -133,21 +135,18 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
                                                                         {5, context.has("sky_irradiance") ? 1u : 0u},
                                                                         {6, hasSky_ ? 1u : 0u},
                                                                         {7, hasEmitted_ ? 1u : 0u},
-                                                                        {8, smooth_ > 0 ? 1u : 0u},
-                                                                        {9, hasEvenSky_ ? 1u : 0u},
-                                                                        {10, context.request().wantsIndirect() ? 1u : 0u}}});
+                                                                        {8, smooth_ > 0 ? 1u : 0u}}});
   };
   traceBricks_ = trace(1);
   if (context.has("clearance")) trace_ = trace(2);
-  const auto filter = [&](bool light, bool evenSky) {
-    return gpu::Pipeline(device,
-                         gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/filter.comp",
-                                                  .bindings = {kB, kI, kI, kI, kI, kB, kB, kB},
-                                                  .pushConstantBytes = 20,
-                                                  .constants = {{0, smooth_ > 0 ? 1u : 0u}, {1, evenSky ? 1u : 0u}, {2, light ? 1u : 0u}}});
+  const auto filter = [&](bool evenSky) {
+    return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/filter.comp",
+                                                          .bindings = {kB, kI, kI, kI, kI, kB, kB},
+                                                          .pushConstantBytes = 20,
+                                                          .constants = {{0, smooth_ > 0 ? 1u : 0u}, {1, evenSky ? 1u : 0u}}});
   };
-  filter_ = filter(context.request().wantsIndirect(), hasEvenSky_);
-  if (hasSky_ || hasEmitted_) lightFilter_ = filter(true, false);
+  filter_ = filter(hasEvenSky_);
+  if (hasSky_ || hasEmitted_) lightFilter_ = filter(false);
 }
 
 void GatherPixels::record(graph::RecordContext& context) {
@@ -170,7 +169,7 @@ void GatherPixels::record(graph::RecordContext& context) {
          near_,
          hasShadow_ ? static_cast<uint32_t>(context.count("lights")) : 0u,
          hasSky_ ? context.buffer("scene.sky").address() : 0,
-         hasSky_ || hasEvenSky_ ? context.buffer("scene.info").address() : 0,
+         hasSky_ ? context.buffer("scene.info").address() : 0,
          hasEmitted_ ? context.buffer("emission").address() : 0,
          spread("spread", true),
          spread("spread_sky", hasSky_),
@@ -230,7 +229,6 @@ void GatherPixels::record(graph::RecordContext& context) {
 void GatherPixels::filter(graph::RecordContext& context, const std::string& suffix, const char* outName) {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& grid = context.buffer("grid");
-  const bool evenSky = hasEvenSky_ && suffix.empty();
   const gpu::Image& out = context.image(outName);
   const gpu::Image* from = &context.image("raw" + suffix);
   const gpu::Buffer* spreads[2] = {&grid, &grid};  // where nothing is smoothed, another buffer takes their bindings
@@ -243,8 +241,7 @@ void GatherPixels::filter(graph::RecordContext& context, const std::string& suff
     // Ends in `out` whatever the number of passes.
     const gpu::Image& to = (smooth_ - pass) % 2 == 0 ? out : context.image("between" + suffix);
     commands.bind(suffix.empty() ? filter_ : lightFilter_,
-                  {grid, context.image("position"), context.image("normal"), *from, to, *spreads[pass % 2], *spreads[1 - pass % 2],
-                   evenSky ? context.buffer("scene.info") : grid});
+                  {grid, context.image("position"), context.image("normal"), *from, to, *spreads[pass % 2], *spreads[1 - pass % 2]});
     struct {
       uint32_t width, height, pass, step, rays;
     } push{out.info().width, out.info().height, pass, pass == 0 ? 1u : kBlock << (pass - 1), rays_};

@@ -5,23 +5,21 @@
 // over all of the block's directions. Later passes: 3×3 pixels, `step` pixels apart. All stop at edges of the surface; the later ones also where light
 // differs by more than its noise, whose variance goes from pass to pass (as in Dammertz et al. 2010 and Schied et al. 2017, within one frame).
 #include "shared/dispatch.glsl"
-#include "shared/scene.h"
 #define RADIVOX_BIND_GRID 0
 #include "shared/voxel_lookup.glsl"
 #include "clustered_voxel/gather_pixels/spread.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool kSpread = false;   // there are later passes
-layout(constant_id = 1) const bool kEvenSky = false;  // w is the share of rays that end in a sky of one radiance
-layout(constant_id = 2) const bool kLight = true;     // xyz counts; else it is not asked for, and w alone tells noise
+layout(constant_id = 1) const bool kEvenSky = false;  // w, the share of rays that end in the sky, is light of its own: weighed by itself
 
 layout(set = 0, binding = 1, rgba32f) readonly uniform image2D positionImage;
 layout(set = 0, binding = 2, rgba32f) readonly uniform image2D normalImage;
 layout(set = 0, binding = 3, rgba32f) readonly uniform image2D fromImage;
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image2D toImage;
-layout(set = 0, binding = 5, scalar) readonly buffer SpreadFrom { float spreadFrom[]; };  // pass 0: mean squares; then variances; of luminance
-layout(set = 0, binding = 6, scalar) writeonly buffer SpreadTo { float spreadTo[]; };     // variances
-layout(set = 0, binding = 7, scalar) readonly buffer Info { SceneInfo info; };
+// Pass 0: mean squares of luminance. Then its variance, and with kEvenSky after it that of w.
+layout(set = 0, binding = 5, scalar) readonly buffer SpreadFrom { float spreadFrom[]; };
+layout(set = 0, binding = 6, scalar) writeonly buffer SpreadTo { float spreadTo[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
   uint height;
@@ -33,8 +31,11 @@ layout(push_constant, scalar) uniform Push {
 // Light that differs by so many standard deviations still counts, by 1/e.
 const float kDeviations = 4.0;  // of 1 to 6 the best or nearly so with 4, 8 and 12 rays in Sponza and two_rooms
 
-float luminanceAt(vec4 light) {
-  return luminanceOf((kLight ? light.xyz : vec3(0.0)) + (kEvenSky ? 3.14159265358979 * light.w * info.skyRadiance : vec3(0.0)));
+const uint kStride = kEvenSky ? 2u : 1u;
+
+// Of luminance and, with kEvenSky, of w.
+vec2 varianceOf(uint pixel) {
+  return vec2(spreadFrom[kStride * pixel], kEvenSky ? spreadFrom[kStride * pixel + 1u] : 0.0);
 }
 
 void main() {
@@ -43,13 +44,14 @@ void main() {
   ivec2 pixel = ivec2(i % width, i / width);
   vec4 position = imageLoad(positionImage, pixel);
   vec4 result = vec4(0.0);
-  float spread = 0.0;
+  vec2 spread = vec2(0.0);
   if (position.w != 0.0) {
     vec3 n = imageLoad(normalImage, pixel).xyz;
     bool stops = kSpread && pass > 0u;
     vec4 own = imageLoad(fromImage, pixel);
-    float ownLuminance = luminanceAt(own), ownSpread = stops ? spreadFrom[i] : 0.0;
-    float total = 0.0, squares = 0.0;
+    vec2 ownLight = vec2(luminanceOf(own.xyz), own.w);
+    vec2 ownSpread = stops ? varianceOf(i) : vec2(0.0);
+    vec2 total = vec2(0.0), squares = vec2(0.0);
     int reach = pass == 0u ? 2 : 1;
     for (int dy = -reach; dy <= reach; ++dy)
       for (int dx = -reach; dx <= reach; ++dx) {
@@ -66,26 +68,33 @@ void main() {
         if (pass == 0u) weight *= (abs(dx) == 2 ? 0.5 : 1.0) * (abs(dy) == 2 ? 0.5 : 1.0);
         else weight *= (dx == 0 ? 2.0 : 1.0) * (dy == 0 ? 2.0 : 1.0);
         vec4 light = imageLoad(fromImage, q);
-        float lightSpread = kSpread ? spreadFrom[uint(q.y) * width + uint(q.x)] : 0.0;
+        uint at = uint(q.y) * width + uint(q.x);
+        vec2 weights = vec2(weight);
         if (stops) {
-          float change = luminanceAt(light) - ownLuminance;
-          weight *= exp(-change * change / max(kDeviations * kDeviations * (ownSpread + lightSpread), 1e-30));
+          vec2 lightSpread = varianceOf(at);
+          vec2 change = vec2(luminanceOf(light.xyz), light.w) - ownLight;
+          vec2 stop = exp(-change * change / max(kDeviations * kDeviations * (ownSpread + lightSpread), vec2(1e-37)));
+          weights *= kEvenSky ? stop : stop.xx;
+          spread += weights * weights * lightSpread;
+        } else if (kSpread) {
+          // A ray ends in the sky or does not: w is its own mean square.
+          spread += weight * vec2(spreadFrom[at], light.w);
         }
-        result += weight * light;
-        spread += (stops ? weight : 1.0) * weight * lightSpread;
-        total += weight;
-        squares += weight * weight;
+        result += weights.xxxy * light;
+        total += weights;
+        squares += weights * weights;
       }
-    if (total > 0.0) {
-      result /= total;
+    if (total.x > 0.0 && total.y > 0.0) {
+      result /= total.xxxy;
       // Pass 0: the variance of a mean over that many rays.
-      float mean = luminanceAt(result);
-      spread = stops ? spread / (total * total) : max(spread / total - mean * mean, 0.0) * squares / (total * total * float(rays));
+      vec2 mean = vec2(luminanceOf(result.xyz), result.w);
+      spread = stops ? spread / (total * total) : max(spread / total - mean * mean, vec2(0.0)) * squares / (total * total * float(rays));
     } else {
       result = own;
       spread = ownSpread;
     }
   }
   imageStore(toImage, pixel, result);
-  if (kSpread) spreadTo[i] = spread;
+  if (kSpread) spreadTo[kStride * i] = spread.x;
+  if (kSpread && kEvenSky) spreadTo[kStride * i + 1u] = spread.y;
 }

@@ -2,6 +2,7 @@
 #ifndef RADIVOX_CLUSTERED_VOXEL_GATHER_PIXELS_SPREAD_GLSL
 #define RADIVOX_CLUSTERED_VOXEL_GATHER_PIXELS_SPREAD_GLSL
 
-float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+// Bounded, so that sums of its squares are.
+float luminanceOf(vec3 light) { return min(dot(light, vec3(0.2126, 0.7152, 0.0722)), 1e18); }
 
 #endif

@@ -53,8 +53,6 @@ layout(constant_id = 7) const bool kEmitted = false;  // emitters light through 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Emission { vec3 of[]; };
 layout(set = 0, binding = 30, rgba32f) uniform image2D rawEmittedImage;
 layout(constant_id = 8) const bool kSpread = false;   // the filter asks how much the rays of a pixel differ
-layout(constant_id = 9) const bool kEvenSky = false;  // a sky without an image, whose light comes by rays that leave the scene
-layout(constant_id = 10) const bool kIndirect = true;  // light from surfaces is asked for
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Squares { float of[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
@@ -68,7 +66,7 @@ layout(push_constant, scalar) uniform Push {
   uvec2 sky;           // address of scene.sky
   uvec2 skyInfo;       // of scene.info
   uvec2 emission;      // of B_e of each face
-  uvec2 squares;       // of the mean squares of what each pixel's rays bring (luminance): all but images' and emitters' light,
+  uvec2 squares;       // of the mean squares of what each pixel's rays bring (luminance): light from surfaces,
   uvec2 skySquares;    // the sky image's light,
   uvec2 emittedSquares;  // emitters'
 };
@@ -149,7 +147,6 @@ void main() {
   float squareSum = addsSquares ? Squares(squares).of[cell] : 0.0;
   float skySquareSum = addsSquares && kSkyImage ? Squares(skySquares).of[cell] : 0.0;
   float emittedSquareSum = addsSquares && kEmitted ? Squares(emittedSquares).of[cell] : 0.0;
-  float evenSky = kSpread && kEvenSky ? 3.14159265358979 * luminanceOf(InfoAt(skyInfo).info.skyRadiance) : 0.0;
   for (uint ray = firstRay; ray < end; ++ray) {
     vec2 square = fract(directions[place * rays + ray] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
@@ -177,7 +174,7 @@ void main() {
     skySum += skyLight;
     emittedSum += emitted;
     if (kSpread) {
-      float arriving = missed ? evenSky : isFace && kIndirect ? luminanceOf(radiosity) : 0.0;
+      float arriving = isFace ? luminanceOf(radiosity) : 0.0;
       squareSum += arriving * arriving;
       float arrivingSky = 3.14159265358979 * luminanceOf(skyLight), arrivingEmitted = luminanceOf(emitted);
       skySquareSum += arrivingSky * arrivingSky;
