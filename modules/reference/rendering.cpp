@@ -25,6 +25,7 @@ constexpr uint32_t kTileSide = 16;
 /// Powers of two with four passes at least, and large enough for what stratifying gains.
 constexpr uint32_t kMostSamplesPerPass = 16;
 constexpr uint32_t kMaxSamplesPerPass = 65536;
+constexpr float kDarkestAlbedo = 1e-4f;
 
 struct CameraRays {
   explicit CameraRays(const scene::CameraDescription& camera, uint32_t width, uint32_t height) : description(camera) {
@@ -225,12 +226,25 @@ Estimate Rendering::Impl::estimate(size_t aov, uint32_t firstHalf, uint32_t endH
   return out;
 }
 
+void Rendering::Impl::divideByAlbedo(const Estimate& reflected, const Estimate& albedo, Estimate& irradiance) {
+  for (size_t i = 0; i < irradiance.mean.data.size(); ++i) {
+    const float plain = irradiance.mean.data[i];
+    // Too dark to tell, or no light: the plain mean stays. Where all samples have one albedo both are the same but for rounding.
+    if (albedo.mean.data[i] < kDarkestAlbedo || plain <= 0.f) continue;
+    const float weighted = 3.14159265358979f * reflected.mean.data[i] / albedo.mean.data[i];
+    irradiance.mean.data[i] = weighted;
+    irradiance.variance.data[i] *= (weighted / plain) * (weighted / plain);
+  }
+}
+
 Images Rendering::Impl::collect(uint32_t firstHalf, uint32_t endHalf) const {
   Images images;
   size_t aov = 0;
   for (Estimate* estimate_ :
        {&images.color, &images.direct, &images.indirect, &images.irradianceDirect, &images.irradianceIndirect, &images.albedo})
     *estimate_ = estimate(aov++, firstHalf, endHalf);
+  divideByAlbedo(images.direct, images.albedo, images.irradianceDirect);
+  divideByAlbedo(images.indirect, images.albedo, images.irradianceIndirect);
   for (uint32_t h = firstHalf; h < endHalf; ++h) images.samples += passesOf(h) * settings.samplesPerPass;
   images.seconds = passes > 0 ? seconds * images.samples / (static_cast<double>(passes) * settings.samplesPerPass) : 0.0;
   return images;

@@ -31,6 +31,8 @@ struct Rendering::Impl {
   void checkTarget();
   uint32_t passesOf(uint32_t half) const;
   Estimate estimate(size_t aov, uint32_t firstHalf, uint32_t endHalf) const;
+  /// `irradiance`, so far means that count as 0 where a sample meets nothing, becomes π `reflected` / `albedo`.
+  static void divideByAlbedo(const Estimate& reflected, const Estimate& albedo, Estimate& irradiance);
   Images collect(uint32_t firstHalf, uint32_t endHalf) const;
 };
 

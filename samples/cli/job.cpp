@@ -104,6 +104,8 @@ Aov resolveAov(const std::string& name, const std::map<std::string, std::string>
 
 }  // namespace
 
+bool isIrradiance(const std::string& aov) { return aov == "irradiance_direct" || aov == "irradiance_indirect"; }
+
 params::Table lightTable(scene::LightOptions& lights) {
   using params::Invalidates;
   return params::Table({
@@ -168,6 +170,10 @@ void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char*
   for (const std::string& name : aovNames) {
     job.aovs.push_back(resolveAov(name, table, job));
     if (!job.aovs.back().endpoint.empty()) endpoints.push_back(job.aovs.back().endpoint);
+    if (isIrradiance(name) && job.supersample > 1 && !job.albedo && table.count("albedo") != 0) {
+      job.albedo = resolveAov("albedo", table, job);
+      endpoints.push_back(job.albedo->endpoint);
+    }
   }
   if (wantsDisplay && job.request.aovs.count("color") != 0 && job.supersample == 1 && table.count("display") != 0) {
     job.displayEndpoint = resolveAov("display", table, job);

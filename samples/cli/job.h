@@ -28,6 +28,7 @@ struct Job {
   uint32_t supersample = 1;
   scene::LightOptions lights;
   std::vector<Aov> aovs;               ///< as asked for
+  std::optional<Aov> albedo;           ///< weights of irradiance where pixels are means of several samples
   std::optional<Aov> displayEndpoint;  ///< tone-mapped picture of `color`, where it is wanted and the graph has it
   params::Table lightParams;           ///< of `lights`; `--set lights.param=value`
 
@@ -42,6 +43,9 @@ inline constexpr const char* kPictureGraph = "clustered_voxel_pixels";
 inline constexpr const char* kFaceGraph = "clustered_voxel";
 /// What pictures start from where neither --graph nor --preset is given; its graph is kPictureGraph.
 inline constexpr const char* kDefaultPreset = "default";
+
+/// E, not radiance: means over samples are weighed by albedo.
+bool isIrradiance(const std::string& aov);
 
 /// Fills `job`; the graph's outputs are those that the AOVs need, and with `wantsDisplay` the tone-mapped picture. Throws BadInput.
 void prepareJob(const Options& options, bool wantsDisplay, Job& job, const char* fallbackGraph = kPictureGraph);

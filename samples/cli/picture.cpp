@@ -11,6 +11,8 @@ namespace radivox::cli {
 
 namespace {
 
+constexpr float kDarkestAlbedo = 1e-4f;
+
 bool isId(const std::string& name) { return name == "face" || name == "cluster"; }
 
 /// Every channel of the image as float.
@@ -97,6 +99,20 @@ image::Image firstOfBlocks(const image::Image& from, uint32_t k) {
   return result;
 }
 
+/// Means of irradiance weighed by albedo, channel by channel, so that E · ρ/π of the means is the mean of E · ρ/π at edges too; plain
+/// means where all samples are black.
+image::Image meansByAlbedo(const image::Image& irradiance, const image::Image& albedo, uint32_t k) {
+  image::Image reflected = irradiance;
+  for (size_t i = 0; i < reflected.data.size(); ++i) reflected.data[i] *= albedo.data[i];
+  reflected = image::blockMeans(reflected, k);
+  const image::Image weights = image::blockMeans(albedo, k);
+  image::Image means = image::blockMeans(irradiance, k);
+  for (size_t i = 0; i < means.data.size(); ++i) {
+    if (weights.data[i] >= kDarkestAlbedo) means.data[i] = reflected.data[i] / weights.data[i];
+  }
+  return means;
+}
+
 /// A colour for an id, far from its neighbours' colours; black for 0 (nothing there).
 image::Image paintIds(const image::Image& ids) {
   image::Image result{ids.width, ids.height, 3, {}};
@@ -111,35 +127,37 @@ image::Image paintIds(const image::Image& ids) {
   return result;
 }
 
+/// The AOV as the executor holds it, `Job::supersample` times as large as the picture.
+image::Image downloadWhole(gpu::Device& device, graph::Executor& executor, const Aov& aov, const scene::Scene& scene) {
+  gpu::Image* source = executor.findImage(aov.endpoint);
+  if (source == nullptr) {
+    throw Error(ErrorCode::BadInput,
+                "AOV " + aov.name + ": " + aov.endpoint + " is no image of this plan; `radivox graph` prints what was left out and why");
+  }
+  image::Image whole = toFloats(gpu::download(device, *source), source->info(), aov.endpoint);
+  if (aov.name == "position" && whole.channels == 4) addOrigin(whole, scene.origin);
+  if (aov.channel < 0) return whole.channels == 4 ? takeChannels(whole, 0, 3) : whole;
+  if (static_cast<uint32_t>(aov.channel) >= whole.channels) {
+    throw Error(ErrorCode::BadInput, "AOV " + aov.name + ": " + aov.endpoint + " has " + std::to_string(whole.channels) +
+                                         " channels; name one of these in the graph's aovs");
+  }
+  return takeChannels(whole, static_cast<uint32_t>(aov.channel), 1);
+}
+
 }  // namespace
 
 image::Layer downloadAov(gpu::Device& device, graph::Executor& executor, const Job& job, const Aov& aov, const scene::Scene& scene) {
-  image::Layer layer;
-  layer.name = aov.name;
-  gpu::Image* source = aov.endpoint.empty() ? nullptr : executor.findImage(aov.endpoint);
-  if (source == nullptr) {
-    if (!aov.endpoint.empty()) {
-      throw Error(ErrorCode::BadInput,
-                  "AOV " + aov.name + ": " + aov.endpoint + " is no image of this plan; `radivox graph` prints what was left out and why");
-    }
-    layer.image = {job.size.width, job.size.height, 3, {}};
-    layer.image.data.resize(static_cast<size_t>(job.size.width) * job.size.height * 3);
-    return layer;
+  if (aov.endpoint.empty()) {
+    image::Layer black{aov.name, {job.size.width, job.size.height, 3, {}}};
+    black.image.data.resize(static_cast<size_t>(job.size.width) * job.size.height * 3);
+    return black;
   }
-  image::Image full = toFloats(gpu::download(device, *source), source->info(), aov.endpoint);
-  if (aov.name == "position" && full.channels == 4) addOrigin(full, scene.origin);
-  if (aov.channel >= 0) {
-    if (static_cast<uint32_t>(aov.channel) >= full.channels) {
-      throw Error(ErrorCode::BadInput, "AOV " + aov.name + ": " + aov.endpoint + " has " + std::to_string(full.channels) +
-                                           " channels; name one of these in the graph's aovs");
-    }
-    full = takeChannels(full, static_cast<uint32_t>(aov.channel), 1);
-  } else if (full.channels == 4) {
-    full = takeChannels(full, 0, 3);
-  }
-  if (job.supersample > 1) full = isId(aov.name) ? firstOfBlocks(full, job.supersample) : image::blockMeans(full, job.supersample);
-  layer.image = std::move(full);
-  return layer;
+  image::Image whole = downloadWhole(device, executor, aov, scene);
+  if (job.supersample == 1) return {aov.name, std::move(whole)};
+  if (isId(aov.name)) return {aov.name, firstOfBlocks(whole, job.supersample)};
+  if (isIrradiance(aov.name) && job.albedo)
+    return {aov.name, meansByAlbedo(whole, downloadWhole(device, executor, *job.albedo, scene), job.supersample)};
+  return {aov.name, image::blockMeans(whole, job.supersample)};
 }
 
 std::vector<image::Layer> arrangeLayers(std::vector<image::Layer> layers) {

@@ -8,7 +8,8 @@
 
 namespace radivox::cli {
 
-/// The AOV at the size of the picture: means over supersample² pixels (ids: the first of them), absolute positions.
+/// The AOV at the size of the picture: means over supersample² pixels (ids: the first of them; irradiance: weighed by
+/// albedo, so that at edges too E · ρ/π of the means is the mean of E · ρ/π), absolute positions.
 image::Layer downloadAov(gpu::Device& device, graph::Executor& executor, const Job& job, const Aov& aov, const scene::Scene& scene);
 
 /// The layers as the command writes them: one AOV as R, G, B; several under their names.
