@@ -38,8 +38,7 @@ uint castShadowRay(vec3 p, vec3 g, vec3 direction, float distance_, uint own) {
     for (; at < last && !met; ++at) {
       uint id = listedTriangle(triangleIds(at));
       vec2 time;
-      vec3 normal;
-      met = meetsTriangle(ray, id, least, most, time, normal) && id != own && castsShadow(id, direction);
+      met = meetsTriangle(ray, id, least, most, time) && id != own && castsShadow(id, direction);
     }
     if (met) {
       result = kRayBlocked;

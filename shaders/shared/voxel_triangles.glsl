@@ -1,14 +1,14 @@
-// Rays against the triangles in a voxel: exact, where planes of the mean surface are too coarse. Over shared/traversal.glsl. The includer
+// Rays against the triangles in a voxel: exact, where planes of the mean surface are too coarse. Over shared/voxel_march.glsl. The includer
 // declares grid, vertices[], indices[], triangleMaterials[], materials[], textures[] (for alpha masks), `uniform usamplerBuffer` triangleFirstTexels and
-// triangleIdTexels (clustered_voxel.triangles), kMasked, `uniform samplerBuffer triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
+// triangleIdTexels (clustered_voxel.triangles), kMasked, `uniform usamplerBuffer triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
 // shared/texture.glsl.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #include "shared/listed_triangle.h"
 #include "shared/texture.glsl"
-#include "shared/traversal.glsl"
 #include "shared/triangle_corners.h"
 #include "shared/triangle_normal.glsl"
+#include "shared/voxel_march.glsl"
 
 const float kNearSlack = 1e-3;       // voxels: hits this far outside a voxel still count for it
 const float kEdgeSlack = 1e-5;       // closes the seams between triangles
@@ -32,31 +32,22 @@ bool isCovered(uint id, vec2 multiples, float size) {
   return alpha >= material.alphaCutoff;
 }
 
-// Corners in grid space, and where kCorners the unit normal.
-void loadCorners(uint id, out vec3 a, out vec3 b, out vec3 c, out vec3 normal) {
-  normal = vec3(0.0);
+// In grid space, rounded alike wherever it comes from; k: 0, 1 or 2.
+vec3 cornerOf(uint id, uint k) {
+  float step_ = cornerStep(castSize);
   if (kCorners) {
-    int at = int(3u * id);
-    vec4 first = texelFetch(triangleCorners, at), second = texelFetch(triangleCorners, at + 1), third = texelFetch(triangleCorners, at + 2);
-    a = first.xyz;
-    b = second.xyz;
-    c = third.xyz;
-    normal = vec3(first.w, second.w, third.w);
-  } else {
-    a = toGridSpace(grid, vertices[indices[3u * id]].position);
-    b = toGridSpace(grid, vertices[indices[3u * id + 1u]].position);
-    c = toGridSpace(grid, vertices[indices[3u * id + 2u]].position);
+    int at = int(6u * id + 2u * k);
+    return decodeCorner(uvec2(texelFetch(triangleCorners, at).x, texelFetch(triangleCorners, at + 1).x), step_);
   }
+  return decodeCorner(encodeCorner(toGridSpace(grid, vertices[indices[3u * id + k]].position), cornerSteps(castSize)), step_);
 }
 
 // Does the ray meet the triangle at least < t < most (voxels)? `most` and `time` are fractions: a numerator, and a denominator above 0, so that no
-// triangle costs a division. `normal`: its front's, unit, where kCorners. Only what is the same on every device: no fused operations.
-bool meetsTriangle(TraversalRay ray, uint id, float least, vec2 most, out vec2 time, out vec3 normal) {
-  vec3 p0, p1, p2;
-  loadCorners(id, p0, p1, p2, normal);
-  vec3 a = p0 - ray.origin;
-  vec3 e1 = p1 - ray.origin - a;
-  vec3 e2 = p2 - ray.origin - a;
+// triangle costs a division. Only what is the same on every device: no fused operations.
+bool meetsTriangle(TraversalRay ray, uint id, float least, vec2 most, out vec2 time) {
+  vec3 a = cornerOf(id, 0u) - ray.origin;
+  vec3 e1 = cornerOf(id, 1u) - ray.origin - a;
+  vec3 e2 = cornerOf(id, 2u) - ray.origin - a;
   precise vec3 q = vec3(ray.direction.y * e2.z - ray.direction.z * e2.y, ray.direction.z * e2.x - ray.direction.x * e2.z,
                         ray.direction.x * e2.y - ray.direction.y * e2.x);
   precise float determinant = triangleDot(e1, q);
@@ -78,27 +69,24 @@ bool meetsTriangle(TraversalRay ray, uint id, float least, vec2 most, out vec2 t
 }
 
 // The nearest of the triangles [at, end) of the cursor's voxel that the ray meets there; `own` never counts. Returns whether there is one; `listed`: its
-// entry of the list, `normal`: unit, on the side that the ray sees, or 0.
+// entry of the list.
 //
 // `lift`: how far the ray's origin was lifted off its own surface. In a corner it may lie behind the other wall all the same, by rounding: triangles
 // up to half of that behind it still stop the ray.
-bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, uint at, uint end, uint own, float lift, out vec2 time, out vec3 normal, out uint listed) {
+bool nearestTriangle(TraversalRay ray, TraversalCursor cursor, uint at, uint end, uint own, float lift, out vec2 time, out uint listed) {
   vec3 exits = traversalExits(ray, cursor.voxel);
   time = vec2(min(exits.x, min(exits.y, exits.z)) + kNearSlack, 1.0);
   float least = max(cursor.time - kNearSlack, -0.5 * lift);
   bool found = false;
-  normal = vec3(0.0);
   listed = 0u;
   for (; at < end; ++at) {
     uint entry = triangleIds(at);
     uint id = listedTriangle(entry);
     vec2 t;
-    vec3 n;
-    if (meetsTriangle(ray, id, least, time, t, n) && id != own) {
+    if (meetsTriangle(ray, id, least, time, t) && id != own) {
       time = t;
       found = true;
       listed = entry;
-      normal = n;
     }
   }
   return found;

@@ -46,13 +46,12 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   bool met = false;
   uint voxel = 0u, listed = 0u;
   vec2 time = vec2(0.0, 1.0);
-  vec3 normal = vec3(0.0);
   while (nearDistance > 0.0) {
     if (castMarch(way, cursor, true, voxel)) atStart = hasLast = false;
     if (voxel == kNone || cursor.time >= nearDistance) break;
     uint first = triangleFirst(voxel), end = triangleFirst(voxel + 1u);
     if (first == end) break;
-    met = nearestTriangle(way, cursor, first, end, own, lift, time, normal, listed);
+    met = nearestTriangle(way, cursor, first, end, own, lift, time, listed);
     if (met) break;
     last = cursor;
     lastVoxel = voxel;
@@ -89,7 +88,7 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
     goesOn = first != end;
     if (goesOn) {
       // From the origin on: planes are rounded, and a ray that hardly leaves its surface may have met the triangle in the voxel before.
-      met = nearestTriangle(way, TraversalCursor(cursor.voxel, 0.0), first, end, own, lift, time, normal, listed);
+      met = nearestTriangle(way, TraversalCursor(cursor.voxel, 0.0), first, end, own, lift, time, listed);
       voxel = plane.voxel;
       goesOn = !met;
       plane.faces = 0u;
@@ -102,7 +101,7 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   result.time = cursor.time;
   if (met) {
     result.triangle = listedTriangle(listed);
-    if (!kCorners) normal = triangleNormal(result.triangle);
+    vec3 normal = triangleNormal(result.triangle);
     result.normal = triangleDot(normal, way.direction) > 0.0 ? -normal : normal;
     precise float at = time.x * preciseReciprocal(time.y);
     result.time = at;

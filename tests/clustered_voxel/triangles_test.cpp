@@ -7,6 +7,7 @@
 #include <random>
 
 #include "shaders/shared/listed_triangle.h"
+#include "shaders/shared/triangle_corners.h"
 #include "shaders/shared/visibility_row.h"
 #include "shaders/shared/voxel_codec.h"
 #include "tests/clustered_voxel/visibility_run.h"
@@ -473,6 +474,28 @@ TEST_F(TrianglesTest, WhatIsMetFromBehindIsABackOnlyIfItsTrianglesSaySo) {
     std::printf("%s: %.2e of the rays end on backs, %.2e where planes alone stop them\n", faces, share[1], share[0]);
     EXPECT_GT(share[0], 1e-3) << "the scene tests nothing";
     EXPECT_LT(share[1], 2e-4);
+  }
+}
+
+/// Steps from what a voxel is cut into: no corner moves by more than half of one, whole voxels not at all, and one place has one code.
+TEST(TriangleCorners, AreRoundedToTheirSteps) {
+  std::mt19937 random(3);
+  for (const glm::uvec3 size : {glm::uvec3(1), glm::uvec3(2, 1, 1), glm::uvec3(40, 128, 7), glm::uvec3(129, 3, 80), glm::uvec3(1023)}) {
+    const float steps = shared::cornerSteps(size), step = shared::cornerStep(size);
+    const float longest = static_cast<float>(std::max({size.x, size.y, size.z}));
+    EXPECT_EQ(steps * step, 1.f);
+    EXPECT_LE(longest, 2097152.f * step);
+    EXPECT_TRUE(longest > 1048576.f * step || longest == 1.f) << "a finer step would do";
+    for (int i = 0; i < 1000; ++i) {
+      glm::vec3 p;
+      for (glm::length_t k = 0; k < 3; ++k)
+        p[k] = std::uniform_real_distribution<float>(0.f, static_cast<float>(size[k]) - 2.f * step)(random);
+      if (i % 3 == 0) p = glm::floor(p);
+      const glm::vec3 back = shared::decodeCorner(shared::encodeCorner(p, steps), step);
+      for (glm::length_t k = 0; k < 3; ++k) EXPECT_LE(std::abs(back[k] - p[k]), i % 3 == 0 ? 0.f : 0.5f * step) << size.x << " " << p[k];
+    }
+    const glm::vec3 outside = shared::decodeCorner(shared::encodeCorner(glm::vec3(-1.f, 2e9f, 0.f), steps), step);
+    EXPECT_EQ(outside, glm::vec3(0.f, 2097151.f * step, 0.f));
   }
 }
 

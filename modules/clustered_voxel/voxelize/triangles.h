@@ -5,7 +5,7 @@
 //         ids+   u32            triangles, ascending within a voxel, each with the faces of the voxel that its piece is no part of
 //                               (shaders/shared/listed_triangle.h); publishes [triangle_entries]
 //         pieces+ uvec2         middle (encodePosition) and area (float bits, h²) of each triangle's part in the voxel; made only if read
-//         corners? vec4 × 3T    corners and normal of each triangle (shared/triangle_corners.h), 48 B; made only if read
+//         corners? uvec2 × 3T   corners of each triangle (shared/triangle_corners.h), 24 B; made only if read
 // runs    when the geometry or the voxels change; host-paced in two steps, since the number of entries must be known to store them
 // cost    two walks over the (triangle, voxel) pairs, a sort of short lists; 4 B an entry (about 5 entries a voxel of Sponza at N = 128)
 // source  beyond the paper (METHODS section 1, "The receiver is where the error sits"): exact geometry for the first voxels of a ray

@@ -47,24 +47,16 @@ layout(set = 0, binding = 18, scalar) readonly buffer Materials { Material mater
 layout(set = 0, binding = 19, scalar) readonly buffer Textures { Texture textures[]; };
 layout(set = 0, binding = 20) uniform usamplerBuffer pieceTexels;  // two words each: middle, area (clustered_voxel.triangles)
 layout(constant_id = 6) const bool kCorners = false;  // triangleCorners is there
-layout(set = 0, binding = 21) uniform samplerBuffer triangleCorners;
+layout(set = 0, binding = 21) uniform usamplerBuffer triangleCorners;
 #include "shared/voxel_walk.glsl"
 
 const float kPieceLift = 2e-3;  // voxels: pieces' middles are good to 1e-3
-
-vec3 unitNormal(uint id) {
-  if (kCorners) {
-    int at = int(3u * id);
-    return vec3(texelFetch(triangleCorners, at).w, texelFetch(triangleCorners, at + 1).w, texelFetch(triangleCorners, at + 2).w);
-  }
-  return triangleNormal(id);
-}
 
 // What a listed triangle's piece gives to face f of its voxel: its share of the area if its front looks that way (`backs`: its back) and is part of the face; n:
 // that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
   uint listed = triangleIds(entry);
-  vec3 front = unitNormal(listedTriangle(listed));
+  vec3 front = triangleNormal(listedTriangle(listed));
   vec3 unit = backs ? -front : front;
   n = unit;
   bool looks = ((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1]) > 0.0;
