@@ -62,7 +62,7 @@ Draft declareAll(const Graph& graph, const CompileInput& input);
 void connectPorts(Draft& draft);
 /// Leaves out what declared itself out, what needs it, and what nobody reads; marks wanted ports.
 void cull(Draft& draft);
-/// Ports that free what they read (Port::frees) modify it where they are its only readers; elsewhere they are plain readers.
+/// Ports that free what they read (Port::frees) modify it where all its other readers come before them; elsewhere they are plain readers.
 void settleFrees(Draft& draft);
 /// Errors that only concern live nodes: missing inputs, kinds, dead versions, counts that nobody publishes, cycles.
 void checkLive(Draft& draft);

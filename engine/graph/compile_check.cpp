@@ -85,14 +85,16 @@ void checkCounts(Draft& draft, uint32_t node) {
   }
 }
 
-/// A version that a Modify port continues is dead: nobody else may read it, or the order would decide what they see.
+/// A version that a Modify port continues is dead: nobody else may read it, or the order would decide what they see. (Of what is freed the other
+/// readers come before by their edges: settleFrees.)
 void checkDeadVersions(Draft& draft) {
   struct Reader {
     uint32_t node, port;
   };
   for (uint32_t n = 0; n < draft.declarations.size(); ++n) {
     for (uint32_t p = 0; p < draft.declarations[n].ports.size(); ++p) {
-      if (draft.declarations[n].ports[p].access != Access::Modify || !draft.isLive(n) || !draft.reads(n, p)) continue;
+      const Port& port = draft.declarations[n].ports[p];
+      if (port.access != Access::Modify || port.frees || !draft.isLive(n) || !draft.reads(n, p)) continue;
       const Source& killed = draft.sources[n][p];
       const std::string name = draft.sourceName(killed);
       for (uint32_t m = 0; m < draft.declarations.size(); ++m) {

@@ -161,16 +161,31 @@ void cull(Draft& draft) {
 }
 
 void settleFrees(Draft& draft) {
-  const auto isSoleReader = [&](uint32_t n, uint32_t p) {
+  const auto comeBefore = [&](uint32_t node) {
+    std::vector<char> before(draft.declarations.size(), 0);
+    std::vector<uint32_t> open{node};
+    while (!open.empty()) {
+      const uint32_t next = open.back();
+      open.pop_back();
+      for (const uint32_t p : predecessors(draft, next)) {
+        if (before[p] == 0) open.push_back(p);
+        before[p] = 1;
+      }
+    }
+    return before;
+  };
+  const auto isLastReader = [&](uint32_t n, uint32_t p) {
     const Source& source = draft.sources[n][p];
     if (source.node == kNone) return false;  // the host's own
     const std::string name = draft.sourceName(source);
     const std::vector<Endpoint>& outputs = draft.graph.outputs();
     if (std::any_of(outputs.begin(), outputs.end(), [&](const Endpoint& output) { return output.print() == name; })) return false;
+    const std::vector<char> before = comeBefore(n);
     for (uint32_t m = 0; m < draft.declarations.size(); ++m) {
       for (uint32_t q = 0; q < draft.declarations[m].ports.size(); ++q) {
         const bool isOther = m != n || q != p;
-        if (isOther && draft.isLive(m) && draft.reads(m, q) && isSame(source, draft.sources[m][q])) return false;
+        if (!isOther || !draft.isLive(m) || !draft.reads(m, q) || !isSame(source, draft.sources[m][q])) continue;
+        if (m == n || before[m] == 0 || draft.declarations[m].ports[q].access != Access::Read) return false;
       }
     }
     return true;
@@ -179,7 +194,7 @@ void settleFrees(Draft& draft) {
     for (uint32_t p = 0; p < draft.declarations[n].ports.size(); ++p) {
       Port& port = draft.declarations[n].ports[p];
       if (!port.frees) continue;
-      port.frees = !draft.input.keepsAll && draft.isLive(n) && draft.reads(n, p) && isSoleReader(n, p);
+      port.frees = !draft.input.keepsAll && draft.isLive(n) && draft.reads(n, p) && isLastReader(n, p);
       if (port.frees) port.access = Access::Modify;
     }
   }

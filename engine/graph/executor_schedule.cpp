@@ -71,12 +71,16 @@ void Executor::Impl::findStale(bool nextFrame) {
     for (uint32_t i = 0; i < steps.size(); ++i) {
       if (stale[i] == 0) continue;
       for (const PlannedPort& port : plan.steps[i].ports) {
-        if (port.resource == kNoResource || (port.access != Access::Write && port.access != Access::Modify)) continue;
+        if (port.resource == kNoResource || port.access == Access::Scratch || port.access == Access::ReadBack) continue;
         // What runs makes its readers run; they come later in this pass.
-        for (const uint32_t reader : links[port.resource][port.version].readers) stale[reader] = 1;
-        // What modifies makes the writer before it run, unless the memory still holds that version. It comes earlier: another pass.
-        if (port.access != Access::Modify || resources[port.resource].currentLink + 1 == port.version) continue;
-        const uint32_t writer = links[port.resource][port.version - 1].writer;
+        if (port.access != Access::Read) {
+          for (const uint32_t reader : links[port.resource][port.version].readers) stale[reader] = 1;
+        }
+        // What reads makes the writer before it run, unless the memory still holds that version (it was modified, or freed). It comes earlier: another pass.
+        if (port.access == Access::Write) continue;
+        const uint32_t link = port.access == Access::Modify ? port.version - 1 : port.version;
+        if (resources[port.resource].currentLink == link) continue;
+        const uint32_t writer = links[port.resource][link].writer;
         if (writer == kNoStep || stale[writer] != 0) continue;
         stale[writer] = 1;
         again = true;

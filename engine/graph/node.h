@@ -59,8 +59,8 @@ struct Port {
   std::string unwantedReason;
   bool persistent = false;  ///< Write: contents of the last run are kept and updated in part (zero-filled when made)
   bool growable = false;    ///< Write: allocated by the node itself while it runs (RecordContext::grow), never by its shape
-  /// Read, in host-paced nodes: what is read here is seldom needed again. Where nobody else reads it, the port is a Modify one, and the memory is freed
-  /// once the node has run: when the node runs again, the writer does before it.
+  /// Read, in host-paced nodes: what is read here is seldom needed again. Where all others that read it come before this node by the graph's edges, the
+  /// port is a Modify one, and the memory is freed once the node has run: when the node, or one of the others, runs again, the writer does before it.
   bool frees = false;
 };
 

@@ -11,7 +11,7 @@ namespace radivox::reference {
 
 namespace {
 
-constexpr char kMagic[] = "radivox reference 1\n";
+constexpr char kMagic[] = "radivox reference 2\n";
 
 struct Header {
   uint64_t scene = 0, camera = 0, seed = 0;
@@ -21,7 +21,7 @@ struct Header {
   uint64_t content = 0;  ///< hash of the pixels
 };
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<PixelMoments>);
-static_assert(sizeof(PixelMoments) == 2 * 2 * kChannelCount * sizeof(float));
+static_assert(sizeof(PixelMoments) == 2 * (2 * kChannelCount + 6) * sizeof(float));
 
 uint64_t hashBytes(const void* data, size_t bytes) {
   const auto* p = static_cast<const char*>(data);

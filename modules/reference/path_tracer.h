@@ -58,8 +58,8 @@ struct Estimate {
 
 /// Names as in `render --aov`. Direct light is light straight from lights, emitters and sky; emission seen by the camera and the sky
 /// behind the scene are in color alone. Irradiance is weighed by albedo, channel by channel: at edges too E · ρ/π of the means is the
-/// mean of E · ρ/π. Where a pixel reflects nothing it is the plain mean, 0 where a sample meets no surface. Its variance is then an
-/// upper bound, since the noise of how much of the pixel is covered counts.
+/// mean of E · ρ/π. Where a pixel reflects nothing it is the plain mean, 0 where a sample meets no surface. Variances are those of
+/// the quotients, to first order.
 struct Images {
   Estimate color;               ///< radiance, W/(m² sr)
   Estimate direct, indirect;    ///< reflected radiance ρE/π of each, W/(m² sr)

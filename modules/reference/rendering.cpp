@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 #include <new>
+#include <numbers>
 
 #include "engine/error.h"
 #include "modules/reference/accumulator.h"
@@ -226,25 +227,40 @@ Estimate Rendering::Impl::estimate(size_t aov, uint32_t firstHalf, uint32_t endH
   return out;
 }
 
-void Rendering::Impl::divideByAlbedo(const Estimate& reflected, const Estimate& albedo, Estimate& irradiance) {
-  for (size_t i = 0; i < irradiance.mean.data.size(); ++i) {
-    const float plain = irradiance.mean.data[i];
-    // Too dark to tell, or no light: the plain mean stays. Where all samples have one albedo both are the same but for rounding.
-    if (albedo.mean.data[i] < kDarkestAlbedo || plain <= 0.f) continue;
-    const float weighted = 3.14159265358979f * reflected.mean.data[i] / albedo.mean.data[i];
-    irradiance.mean.data[i] = weighted;
-    irradiance.variance.data[i] *= (weighted / plain) * (weighted / plain);
+Estimate Rendering::Impl::irradiance(size_t lights, const Estimate& reflected, const Estimate& albedo, uint32_t firstHalf,
+                                     uint32_t endHalf) const {
+  Estimate out = estimate(kIrradiance / 3 + lights, firstHalf, endHalf);
+  double total = 0;
+  for (uint32_t h = firstHalf; h < endHalf; ++h) total += passesOf(h);
+  for (size_t i = 0; i < out.mean.data.size(); ++i) {
+    if (albedo.mean.data[i] < kDarkestAlbedo) continue;
+    const double l = static_cast<double>(reflected.mean.data[i]), rho = static_cast<double>(albedo.mean.data[i]), ratio = l / rho;
+    out.mean.data[i] = static_cast<float>(std::numbers::pi * ratio);
+    if (!(total > 1)) continue;
+    // To first order: the variance of reflected light less what albedo (how much of the pixel is covered, and by what) explains of it.
+    double products = 0;
+    for (uint32_t h = firstHalf; h < endHalf; ++h) {
+      const Moments& half = pixels[i / 3].half[h];
+      const size_t c = 3 * lights + i % 3;
+      products += static_cast<double>(half.products[c]) +
+                  passesOf(h) * (static_cast<double>(half.mean[kDirect + c]) - l) * (static_cast<double>(half.mean[kAlbedo + i % 3]) - rho);
+    }
+    const double covariance = products / (total * (total - 1.0));
+    const double variance = static_cast<double>(reflected.variance.data[i]) - 2 * ratio * covariance +
+                            ratio * ratio * static_cast<double>(albedo.variance.data[i]);
+    out.variance.data[i] = static_cast<float>(std::max(variance, 0.0) * (std::numbers::pi / rho) * (std::numbers::pi / rho));
   }
+  return out;
 }
 
 Images Rendering::Impl::collect(uint32_t firstHalf, uint32_t endHalf) const {
   Images images;
-  size_t aov = 0;
-  for (Estimate* estimate_ :
-       {&images.color, &images.direct, &images.indirect, &images.irradianceDirect, &images.irradianceIndirect, &images.albedo})
-    *estimate_ = estimate(aov++, firstHalf, endHalf);
-  divideByAlbedo(images.direct, images.albedo, images.irradianceDirect);
-  divideByAlbedo(images.indirect, images.albedo, images.irradianceIndirect);
+  images.color = estimate(0, firstHalf, endHalf);
+  images.direct = estimate(kDirect / 3, firstHalf, endHalf);
+  images.indirect = estimate(kDirect / 3 + 1, firstHalf, endHalf);
+  images.albedo = estimate(kAlbedo / 3, firstHalf, endHalf);
+  images.irradianceDirect = irradiance(0, images.direct, images.albedo, firstHalf, endHalf);
+  images.irradianceIndirect = irradiance(1, images.indirect, images.albedo, firstHalf, endHalf);
   for (uint32_t h = firstHalf; h < endHalf; ++h) images.samples += passesOf(h) * settings.samplesPerPass;
   images.seconds = passes > 0 ? seconds * images.samples / (static_cast<double>(passes) * settings.samplesPerPass) : 0.0;
   return images;

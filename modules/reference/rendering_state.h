@@ -31,8 +31,8 @@ struct Rendering::Impl {
   void checkTarget();
   uint32_t passesOf(uint32_t half) const;
   Estimate estimate(size_t aov, uint32_t firstHalf, uint32_t endHalf) const;
-  /// `irradiance`, so far means that count as 0 where a sample meets nothing, becomes π `reflected` / `albedo`.
-  static void divideByAlbedo(const Estimate& reflected, const Estimate& albedo, Estimate& irradiance);
+  /// π `reflected` / `albedo`; where that is too dark to tell, the plain mean, which counts as 0 where a sample meets nothing. `lights`: 0 direct, 1 indirect.
+  Estimate irradiance(size_t lights, const Estimate& reflected, const Estimate& albedo, uint32_t firstHalf, uint32_t endHalf) const;
   Images collect(uint32_t firstHalf, uint32_t endHalf) const;
 };
 

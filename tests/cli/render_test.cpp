@@ -215,6 +215,25 @@ TEST_F(RenderCommand, SupersamplingIsTheMeanOfALargerPicture) {
   }
 }
 
+// Irradiance of a pixel is what its mean albedo reflects as its mean light, at edges too, and whether albedo was asked for or not.
+TEST_F(RenderCommand, SupersampledIrradianceIsWeighedByAlbedo) {
+  const std::vector<std::string> scene = {"render", "builtin:cornell_point", "--graph", "direct", "--size", "24x16", "--supersample", "3"};
+  auto with = scene, without = scene;
+  with.insert(with.end(), {"--aov", "irradiance_direct,direct,albedo", "--out", path("with.exr")});
+  without.insert(without.end(), {"--aov", "irradiance_direct,direct", "--out", path("without.exr")});
+  ASSERT_NO_FATAL_FAILURE(expectDone(with));
+  ASSERT_NO_FATAL_FAILURE(expectDone(without));
+  const auto a = image::readExr(path("with.exr")), b = image::readExr(path("without.exr"));
+  const image::Image &e = find(a, "irradiance_direct")->image, &albedo = find(a, "albedo")->image, &direct = find(a, "direct")->image;
+  EXPECT_EQ(e.data, find(b, "irradiance_direct")->image.data);
+  size_t lit = 0;
+  for (size_t i = 0; i < e.data.size(); ++i) {
+    EXPECT_NEAR(e.data[i] * albedo.data[i] / 3.14159265f, direct.data[i], 1e-5f * direct.data[i]);
+    if (direct.data[i] > 0.f) ++lit;
+  }
+  EXPECT_GT(lit, e.data.size() / 4);
+}
+
 /// Two small triangles in opposite corners of a cube: little surface, and a grid as large as the resolution makes it.
 std::string cornersGltf() {
   std::vector<float> positions;

@@ -177,6 +177,48 @@ TEST_F(HostPacedTest, WhatOnlyOneNodeReadsItMayFree) {
   EXPECT_EQ(bytesOf(h, "fill.out"), 0u);
 }
 
+TEST_F(HostPacedTest, WhatOthersReadBeforeIsFreed) {
+  //  fill ──▶ before ──▶ frees: adds up, and frees what fill wrote
+  //    └──────────────────▲
+  NodeHarness h(device());
+  addFill(h.graph(), "fill");
+  addAdd(h.graph(), "before");
+  const auto add = std::make_shared<AddPipeline>();
+  FakeNode& frees = addFake(h.graph(), "frees", [](Declaration& d) {
+    d.read("in", "words").frees = true;
+    d.read("after", "words");
+    d.write("out", Shape::buffer(4, 4), "words");
+    d.hostPaced();
+  });
+  frees.onPrepare = [add](graph::PrepareContext& c) { add->prepare(c.device()); };
+  frees.onRecord = [add, &frees](RecordContext& c) { add->dispatch(c.commands(), c.buffer("in"), c.buffer("out"), 4, frees.value); };
+  h.connect("fill.out", "before.in");
+  h.connect("fill.out", "frees.in");
+  h.connect("before.out", "frees.after");
+  h.output("frees.out");
+  h.output("before.out");
+  h.set("fill.value", "7");
+  h.set("before.value", "1");
+  h.set("frees.value", "2");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("before.out"), repeat(4, 8));
+  EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 9));
+  EXPECT_EQ(bytesOf(h, "fill.out"), 0u);
+  h.run();
+  EXPECT_EQ(h.runCount("fill"), 1u) << "nothing changed";
+  h.set("before.value", "5");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("before.out"), repeat(4, 12)) << "what was freed is made again for the others too";
+  EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 9));
+  EXPECT_EQ(h.runCount("fill"), 2u);
+  EXPECT_EQ(bytesOf(h, "fill.out"), 0u);
+  h.set("frees.value", "3");
+  h.run();
+  EXPECT_EQ(h.download<uint32_t>("frees.out"), repeat(4, 10));
+  EXPECT_EQ(h.runCount("fill"), 3u);
+  EXPECT_EQ(bytesOf(h, "fill.out"), 0u);
+}
+
 TEST_F(HostPacedTest, WhatOthersReadIsNotFreed) {
   for (const std::string other : {"output", "reader", "rival"}) {
     NodeHarness h(device());

@@ -164,6 +164,21 @@ TEST_F(ReferenceRendering, PartsAddUp) {
   EXPECT_NE(messageOf([&] { images.find("colour"); }).find("\"color\""), std::string::npos);
 }
 
+// Also where a pixel holds two albedos, or surface and nothing.
+TEST_F(ReferenceRendering, IrradianceTimesAlbedoIsTheLightReflected) {
+  settings.spp = 16;
+  scene.cameras[0].yfov *= 1.5f;  // beyond the box there is nothing
+  const Images images = tracer.render(scene.cameras[0], settings);
+  size_t edges = 0;
+  for (size_t i = 0; i < images.albedo.mean.data.size(); ++i) {
+    const float albedo = images.albedo.mean.data[i] / 3.14159265f;
+    EXPECT_NEAR(images.irradianceDirect.mean.data[i] * albedo, images.direct.mean.data[i], 1e-5f * images.direct.mean.data[i]);
+    EXPECT_NEAR(images.irradianceIndirect.mean.data[i] * albedo, images.indirect.mean.data[i], 1e-5f * images.indirect.mean.data[i]);
+    if (images.albedo.variance.data[i] > 0.f) ++edges;
+  }
+  EXPECT_GT(edges, 30u);
+}
+
 TEST_F(ReferenceRendering, OnePassKnowsNoVariance) {
   settings.spp = 1;
   Rendering rendering(tracer, scene.cameras[0], settings);

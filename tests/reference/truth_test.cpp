@@ -1,7 +1,4 @@
 // Whole pictures against independent path-traced renders (../shared/truth), pixel by pixel, by the noise of both.
-//
-// Those files hold E as mean(ρE)/mean(ρ) of each pixel, so the test's E is π · direct / albedo, not irradiance_direct, which differs where a
-// pixel holds two albedos.
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
@@ -37,20 +34,13 @@ class ReferenceTruth : public testing::Test {
     images_ = reference::PathTracer(scene).render(
         scene.cameras[0], {.width = direct.a.width, .height = direct.a.height, .bounces = bounces, .spp = spp, .samplesPerPass = 2});
     std::printf("%s, %u samples a pixel, %.1f s\n", file.c_str(), images_.samples, images_.seconds);
-    return {compareOne("direct", direct, images_.direct), compareOne("indirect", indirect, images_.indirect)};
+    return {compareOne("direct", direct, images_.irradianceDirect), compareOne("indirect", indirect, images_.irradianceIndirect)};
   }
 
   reference::Images images_;
 
  private:
-  Comparison compareOne(const char* what, const oracles::NoisyTruth& truth, const reference::Estimate& radiance) {
-    reference::Estimate e = radiance;
-    for (size_t i = 0; i < e.mean.data.size(); ++i) {
-      const float albedo = images_.albedo.mean.data[i];
-      const float factor = albedo > 0.f ? std::numbers::pi_v<float> / albedo : 0.f;
-      e.mean.data[i] *= factor;
-      e.variance.data[i] *= factor * factor;
-    }
+  Comparison compareOne(const char* what, const oracles::NoisyTruth& truth, const reference::Estimate& e) {
     Comparison result;
     result.pixels = oracles::compareWithNoise(truth, e.mean, e.variance, 1);
     result.blocks = oracles::compareWithNoise(truth, e.mean, e.variance, 8);

@@ -76,7 +76,7 @@ void Bounce::declare(graph::Declaration& d) {
              bounces > 1 ? "the last bounce goes to clusters" : "one bounce needs no light between clusters");
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
-  d.read("labels", "cluster id of each face");
+  d.readIf(needsRows, "labels", "cluster id of each face", "faces receive what their cluster does").optional = true;
   d.read("faces", "Face");
   const char* noEmission = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
   d.readIf(emits, "emission", "mean B_e of each face, W/m²", noEmission).optional = !emits;
@@ -115,7 +115,11 @@ void Bounce::prepare(graph::PrepareContext& context) {
     sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 7);
     finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 3);
   }
-  finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 12, {{0, context.has("visibility_entries") ? 1u : 0u}});
+  hasRows_ = context.has("visibility_entries") && context.has("labels");
+  if (hasRows_)
+    finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_faces.comp", 10);
+  else
+    finishFaces_ = makePipeline(device, "clustered_voxel/bounce/finish_members.comp", 7);
 }
 
 BounceControl Bounce::makeControl(uint32_t clusterCount, bool counted) const {
@@ -166,10 +170,13 @@ void Bounce::record(graph::RecordContext& context) {
   if (hasMatrix && hasEmission) recordEmission(context, push);
   if (hasMatrix) recordSweeps(context, push, counted ? bounces - 1 : iterations_);
   // Faces with rows receive what clusters send in the end; others what their cluster received.
-  const bool hasRows = context.has("visibility_entries");
-  if (hasRows) recordClusters(context, push);
-  recordFaces(context, push, counted ? bounces - 1 : 0);
-  if (!hasRows) recordClusters(context, push);
+  if (hasRows_) {
+    recordClusters(context, push);
+    recordFaces(context, push, counted ? bounces - 1 : 0);
+  } else {
+    recordMembers(context, push);
+    recordClusters(context, push);
+  }
   commands.copy(control, status, kStatusBytes, offsetof(BounceControl, iterations));
 }
 
@@ -203,22 +210,27 @@ void Bounce::recordClusters(graph::RecordContext& context, const BouncePush& pus
 
 void Bounce::recordFaces(graph::RecordContext& context, BouncePush push, uint32_t sweeps) const {
   gpu::Commands& commands = context.commands();
-  const gpu::Buffer& indirect = context.buffer("cluster_radiosity");  // unless there are rows
-  const gpu::Buffer& none = indirect;                                 // bound where the shader reads nothing
-  const bool hasRows = context.has("visibility_entries");
-  const gpu::Buffer& received = push.hasEmission != 0 ? context.buffer("received") : none;
-  const gpu::Buffer& emission = push.hasEmission != 0 ? context.buffer("cluster_emission") : none;
+  const gpu::Buffer& radiosity = context.buffer("cluster_radiosity");
   // Where bounces are counted, faces receive the last one in place of the clusters: from what these sent before their last sweep.
-  const bool counted = hasRows && sweeps > 0;
-  push.senders = counted && (sweeps - 1) % 2 != 0 ? push.clusterCount : 0;
+  push.senders = sweeps > 0 && (sweeps - 1) % 2 != 0 ? push.clusterCount : 0;
   commands.barrier();
-  commands.bind(finishFaces_,
-                {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"), received, indirect,
-                 context.buffer("face_radiosity"), hasRows ? context.buffer("visibility_row_start") : none,
-                 hasRows ? context.buffer("chunk_table") : none, counted ? context.buffer("iterate") : context.buffer("cluster_radiosity"),
-                 context.buffer("direct_radiosity"), emission, context.buffer("clusters")});
+  commands.bind(finishFaces_, {context.buffer("faces"), context.buffer("labels"), context.buffer("face_irradiance"),
+                               context.buffer("face_radiosity"), context.buffer("visibility_row_start"), context.buffer("chunk_table"),
+                               sweeps > 0 ? context.buffer("iterate") : radiosity, context.buffer("direct_radiosity"),
+                               push.hasEmission != 0 ? context.buffer("cluster_emission") : radiosity, context.buffer("clusters")});
   commands.push(push);
   commands.dispatchItems(push.faceCount, kGroup);
+}
+
+void Bounce::recordMembers(graph::RecordContext& context, const BouncePush& push) const {
+  gpu::Commands& commands = context.commands();
+  const gpu::Buffer& indirect = context.buffer("cluster_radiosity");
+  commands.barrier();
+  commands.bind(finishFaces_,
+                {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), context.buffer("face_irradiance"),
+                 push.hasEmission != 0 ? context.buffer("received") : indirect, indirect, context.buffer("face_radiosity")});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kGroup);
 }
 
 void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push, uint32_t count) const {

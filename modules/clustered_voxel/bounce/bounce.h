@@ -1,6 +1,6 @@
 // clustered_voxel.bounce — light that surfaces pass on among themselves.
 //
-// reads   row_start, entries, sky of transfer (not needed for one bounce without emitters by rays); clusters, members, labels, faces;
+// reads   row_start, entries, sky of transfer (not needed for one bounce without emitters by rays); clusters, members, faces; labels,
 //         visibility_row_start, visibility_entries, chunk_table (last=faces; optional): rows of visibility
 //         weights? of visibility, for means of emission (absent: areas);
 //         face_irradiance and direct_radiosity of inject; emission where emitters light through rays (Traits::emittersByRays)
@@ -48,7 +48,9 @@ class Bounce : public graph::Node {
  private:
   void recordEmission(graph::RecordContext& context, const shared::BouncePush& push) const;
   void recordClusters(graph::RecordContext& context, const shared::BouncePush& push) const;
+  /// The last bounce to each face: by its own rays, or as its cluster received it.
   void recordFaces(graph::RecordContext& context, shared::BouncePush push, uint32_t sweeps) const;
+  void recordMembers(graph::RecordContext& context, const shared::BouncePush& push) const;
   void recordSweeps(graph::RecordContext& context, const shared::BouncePush& push, uint32_t count) const;
   shared::BounceControl makeControl(uint32_t clusterCount, bool counted) const;
 
@@ -56,6 +58,7 @@ class Bounce : public graph::Node {
   Last last_ = Last::Faces;
   float residual_ = 1e-6f;
   uint32_t iterations_ = 1000;
+  bool hasRows_ = false;
   params::Table table_;
   gpu::Pipeline meanEmission_, receiveEmission_, source_, begin_, sweep_, finishClusters_, finishFaces_;
 };

@@ -26,12 +26,12 @@ Transfer::Transfer()
                              params::Invalidates::Plan)}) {}
 
 void Transfer::declare(graph::Declaration& d) {
-  // Rows are most of what rays leave behind. Where neither the last bounce nor the sky goes to faces, this is the last to read them.
+  // Rows are most of what rays leave behind. Where neither the last bounce nor the sky goes to faces, this is the last to read them, and labels.
   d.read("visibility_row_start", "first bit of each face's row in its chunk").frees = true;
   d.read("visibility_entries", "rows of the faces, by chunk").frees = true;
   d.read("chunk_table", "device address of each chunk").frees = true;
   d.read("faces", "Face");
-  d.read("labels", "cluster id of each face");
+  d.read("labels", "cluster id of each face").frees = true;
   d.read("clusters", "Cluster");
   d.read("members", "face ids by cluster");
   d.read("weights", "how much of each face others see").optional = true;

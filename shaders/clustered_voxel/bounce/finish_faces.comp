@@ -1,26 +1,23 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// B_s = ρ_s (E_dir,s + E_emit + E_ind): direct light at the detail of faces; the rest from the face's own rays (kRows), or from its cluster.
+// B_s = ρ_s (E_dir,s + E_emit + E_ind): direct light at the detail of faces; the rest from the face's own rays.
 #include "clustered_voxel/bounce/bounce_types.h"
 #include "shared/dispatch.glsl"
 #include "shared/visibility_rows.glsl"
 #include "shared/voxel_codec.h"
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool kRows = false;
 layout(push_constant, scalar) uniform Push { BouncePush push; };
 layout(set = 0, binding = 0, scalar) readonly buffer Faces { Face faces[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer Labels { uint labels[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer Direct { vec3 faceIrradiance[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer Received { vec3 received[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer Indirect { vec3 indirect[]; };
-layout(set = 0, binding = 5, scalar) writeonly buffer Radiosity { vec3 radiosity[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer VisibilityRowStart { uint visibilityRowStart[]; };
-layout(set = 0, binding = 7, scalar) readonly buffer ChunkTable { uvec2 chunkTable[]; };
-layout(set = 0, binding = 8, scalar) readonly buffer Senders { vec3 senders[]; };        // reflected radiosity of clusters, a bounce before
-layout(set = 0, binding = 9, scalar) readonly buffer DirectRadiosity { vec3 directRadiosity[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer MeanEmission { vec3 meanEmission[]; };
-layout(set = 0, binding = 11, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer Radiosity { vec3 radiosity[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer VisibilityRowStart { uint visibilityRowStart[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer ChunkTable { uvec2 chunkTable[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer Senders { vec3 senders[]; };        // reflected radiosity of clusters, a bounce before
+layout(set = 0, binding = 7, scalar) readonly buffer DirectRadiosity { vec3 directRadiosity[]; };
+layout(set = 0, binding = 8, scalar) readonly buffer MeanEmission { vec3 meanEmission[]; };
+layout(set = 0, binding = 9, scalar) readonly buffer Clusters { Cluster clusters[]; };
 
 // What leaves the surface that an entry of a row names. Nearby it is a face: its direct light is its own, what else it reflects its cluster's.
 vec3 radiosityOf(uint id) {
@@ -55,13 +52,5 @@ vec3 rowIrradiance(uint s) {
 void main() {
   uint s = radivoxItemIndex();
   if (s >= push.faceCount) return;
-  vec3 irradiance = faceIrradiance[s];
-  if (kRows) {
-    irradiance += rowIrradiance(s);
-  } else {
-    uint c = labels[s];
-    irradiance += indirect[c];
-    if (push.hasEmission != 0u) irradiance += received[c];
-  }
-  radiosity[s] = decodeAlbedo(faces[s].albedo) * irradiance;
+  radiosity[s] = decodeAlbedo(faces[s].albedo) * (faceIrradiance[s] + rowIrradiance(s));
 }
