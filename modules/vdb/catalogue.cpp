@@ -70,7 +70,7 @@ const std::vector<Input>& inputs() {
       {"fragments", "clustered_voxel.fragments", "count", NeedFragments},
       {"normals", "clustered_voxel.fragments", "normal", NeedNormals},
       {"labels", "clustered_voxel.cluster", "labels", NeedLabels},
-      {"clusters", "clustered_voxel.members", "clusters", NeedClusters},
+      {"cluster_places", "clustered_voxel.members", "places", NeedClusters},
       {"row_start", "clustered_voxel.visibility", "row_start", NeedRows},
       {"entries", "clustered_voxel.visibility", "entries", NeedRows},
       {"face_irradiance", "clustered_voxel.inject", "face_irradiance", NeedDirect},

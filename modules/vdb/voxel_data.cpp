@@ -105,7 +105,7 @@ void VoxelData::readFaceFamily(const Family& family, FamilyValues& values) {
     values.face = make([&](size_t s) { return shared::colourOfId(labels[s]); });
   } else if (isNamed(family, "cluster_normal")) {
     const auto labels = download<uint32_t>("labels", count);
-    const auto clusters = download<shared::Cluster>("clusters", buffers_.clusterCount);
+    const auto clusters = download<shared::ClusterPlace>("cluster_places", buffers_.clusterCount);
     values.face = make([&](size_t s) { return clusters.at(labels[s]).normal; });
   } else if (isNamed(family, "lit")) {
     const auto direct = download<glm::vec3>("face_irradiance", count);

@@ -1,6 +1,6 @@
 // vdb.write — voxels, faces and clusters as grids of an OpenVDB or NanoVDB file: a sink, on the host.
 //
-// reads   grid, voxels always; and only where a grid of the list needs it: mask, first, faces; fragments, normals; labels, clusters;
+// reads   grid, voxels always; and only where a grid of the list needs it: mask, first, faces; fragments, normals; labels, cluster_places;
 //         row_start, entries+ of visibility; face_irradiance; irradiance, valid, error of gather (inputs() in catalogue.h: from which node)
 // writes  nothing in the graph; the file, whole or not at all
 // runs    when an input, the list or the file's name changes: host-paced, a step a grid. Left out where no file is named

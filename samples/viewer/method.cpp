@@ -82,12 +82,24 @@ void Method::compile(const scene::Scene& scene) {
   gpuScene_->setCamera(view_.camera, view_.width, view_.height);
   traits_ = scene::traitsFor(scene, job_->lights);
   const scene::Request& request = job_->request;
-  graph::Plan plan = graph::compile(job_->graph, {.traits = traits_,
-                                                  .request = request,
-                                                  .capabilities = device_.capabilities(),
-                                                  .imports = gpuScene_->imports(),
-                                                  .knownCounts = gpuScene_->counts(),
-                                                  .keepsAll = true});  // overlays look at what nodes hand on
+  const auto makePlan = [&] {
+    return graph::compile(job_->graph, {.traits = traits_,
+                                        .request = request,
+                                        .capabilities = device_.capabilities(),
+                                        .imports = gpuScene_->imports(),
+                                        .knownCounts = gpuScene_->counts(),
+                                        .keepsAll = true});  // overlays look at what nodes hand on
+  };
+  graph::Plan plan = makePlan();
+  // Where clusters are, which only overlays ask: of clusters that the picture has made.
+  bool asks = false;
+  for (const graph::Graph::Entry& entry : job_->graph.nodes()) {
+    if (entry.node->type() != "clustered_voxel.members" || plan.findPort(entry.name, "clusters") == nullptr) continue;
+    if (plan.findPort(entry.name, "places") != nullptr && plan.findPort(entry.name, "places")->resource != graph::kNoResource) continue;
+    job_->graph.output(entry.name + ".places");
+    asks = true;
+  }
+  if (asks) plan = makePlan();
   executor_ = std::make_unique<graph::Executor>(device_, job_->graph, std::move(plan), traits_, request, gpuScene_->counts());
   gpuScene_->importInto(*executor_);
 }

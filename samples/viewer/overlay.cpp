@@ -78,7 +78,7 @@ std::string OverlayPainter::findFault(const Ports& ports, Overlay overlay) {
     if (ports.buffer(type, port) == nullptr) return "this plan has no voxels: there is no " + std::string(type) + " in it";
   }
   if (overlay == Overlay::Clusters || overlay == Overlay::ClusterNormals || overlay == Overlay::VisibleClusters) {
-    if (ports.buffer("clustered_voxel.cluster", "labels") == nullptr || ports.buffer("clustered_voxel.members", "clusters") == nullptr)
+    if (ports.buffer("clustered_voxel.cluster", "labels") == nullptr || ports.buffer("clustered_voxel.members", "places") == nullptr)
       return "this plan has no clusters";
   }
   if (overlay == Overlay::VisibleClusters && ports.buffer("clustered_voxel.visibility", "row_start") == nullptr)
@@ -193,7 +193,7 @@ Pixels OverlayPainter::paint(const Ports& ports, Overlay overlay, float exposure
   submit([&](gpu::Commands& commands) {
     commands.bind(paint_, {pixels_, hasPicture ? *picture : noImage, *ports.buffer("clustered_voxel.surface", "faces"),
                            orNone(ports.buffer("clustered_voxel.cluster", "labels")),
-                           orNone(ports.buffer("clustered_voxel.members", "clusters")), orNone(values), orNone(valid), marks_, texels_});
+                           orNone(ports.buffer("clustered_voxel.members", "places")), orNone(values), orNone(valid), marks_, texels_});
     commands.push(push);
     commands.dispatchItems(uint64_t{width_} * height_, 64);
   });

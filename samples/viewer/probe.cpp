@@ -75,8 +75,8 @@ bool FaceProbe::isRetraceable(const Ports& ports) {
 }
 
 void FaceProbe::pointToClusters(const Ports& ports, PointedFace& pointed) {
-  const std::vector<shared::Cluster> clusters =
-      gpu::downloadAs<shared::Cluster>(device_, *ports.buffer("clustered_voxel.members", "clusters"), ports.count("clusters"));
+  const std::vector<shared::ClusterPlace> clusters =
+      gpu::downloadAs<shared::ClusterPlace>(device_, *ports.buffer("clustered_voxel.members", "places"), ports.count("clusters"));
   for (const auto& [cluster, rays] : pointed.clusters) {
     PointedFace::Ray ray;
     ray.end = toWorld(grid_, clusters.at(cluster).position);

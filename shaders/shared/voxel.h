@@ -37,12 +37,16 @@ struct Face {
 RADIVOX_CONST uint kMadeOfBacks = 0x80000000u;
 
 struct Cluster {
+  vec3 albedo;      // area-weighted mean ρ
+  uint firstMember; // into cluster.members
+  uint faceCount;
+};
+
+// Where a cluster is: few ask.
+struct ClusterPlace {
   vec3 position;    // area-weighted mean, grid space
   float area;       // A_c = Σ a_s, h²
   vec3 normal;      // unit, area-weighted mean
-  uint faceCount;
-  vec3 albedo;      // area-weighted mean ρ
-  uint firstMember; // into cluster.members
 };
 
 // Visibility row entry, once read (visibility_row.h): id | (count − 1) << 24. id < C: cluster; C ≤ id < C + F: face id − C (near hit); kMissBase + b: miss in

@@ -12,7 +12,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer Pixels { uvec2 pixels[]; };
 layout(set = 0, binding = 1, rgba8) readonly uniform image2D pictureImage;
 layout(set = 0, binding = 2, scalar) readonly buffer Faces { Face faces[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer Labels { uint labels[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer Places { ClusterPlace places[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer Values { float values[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer Valid { uint valid[]; };
 layout(set = 0, binding = 7, scalar) readonly buffer Marks { float marks[]; };
@@ -44,7 +44,7 @@ vec3 encodeSrgb(vec3 x) {
 vec3 colourOfFace(uint s, vec3 picture) {
   if (push.mode == kPaintAlbedo) return encodeSrgb(decodeAlbedo(faces[s].albedo));
   if (push.mode == kPaintClusters) return colourOf(labels[s]);
-  if (push.mode == kPaintClusterNormals) return 0.5 + 0.5 * clusters[labels[s]].normal;
+  if (push.mode == kPaintClusterNormals) return 0.5 + 0.5 * places[labels[s]].normal;
   if (push.mode == kPaintValues) {
     if (push.usesValid != 0u && (valid[s >> 5] >> (s & 31u) & 1u) == 0u) return kUnknown;
     uint at = s * push.valueStride;

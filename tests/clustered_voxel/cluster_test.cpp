@@ -46,6 +46,7 @@ class ClusterTest : public oracles::GpuTest {
   struct Output {
     std::vector<uint32_t> labels, members;
     std::vector<shared::Cluster> clusters;
+    std::vector<shared::ClusterPlace> places;
     uint32_t clusterCount = 0;
     std::map<std::string, double> figures;
   };
@@ -79,13 +80,14 @@ class ClusterTest : public oracles::GpuTest {
     h.set("cluster.iterations", std::to_string(settings.iterations));
     h.set("cluster.stop_fraction", std::to_string(settings.stopFraction));
     h.set("cluster.merge", std::to_string(settings.merge));
-    for (const char* port : {"cluster.labels", "cluster.status", "members.members", "members.clusters"}) h.output(port);
+    for (const char* port : {"cluster.labels", "cluster.status", "members.members", "members.clusters", "members.places"}) h.output(port);
     h.run();
     Output out;
     out.clusterCount = static_cast<uint32_t>(h.count("clusters"));
     out.labels = h.download<uint32_t>("cluster.labels", s.faces.size());
     out.members = h.download<uint32_t>("members.members", s.faces.size());
     out.clusters = h.download<shared::Cluster>("members.clusters", out.clusterCount);
+    out.places = h.download<shared::ClusterPlace>("members.places", out.clusterCount);
     for (const char* name : {"seeds", "iterations", "orphans", "pieces", "merged", "clusters"})
       out.figures[name] = h.figure("cluster", name);
     return out;
@@ -161,6 +163,7 @@ TEST_F(ClusterTest, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(a.members, b.members);
   ASSERT_EQ(a.clusters.size(), b.clusters.size());
   EXPECT_EQ(std::memcmp(a.clusters.data(), b.clusters.data(), a.clusters.size() * sizeof(shared::Cluster)), 0);
+  EXPECT_EQ(std::memcmp(a.places.data(), b.places.data(), a.places.size() * sizeof(shared::ClusterPlace)), 0);
 }
 
 TEST_F(ClusterTest, NothingGivesNoClusters) {
@@ -193,14 +196,15 @@ TEST_F(ClusterTest, SlowMembersAreListedAndDescribed) {
   const auto expected = oracle::describeClusters(s, out.labels, out.clusterCount);
   double area = 0, faceArea = 0;
   for (uint32_t c = 0; c < out.clusterCount; ++c) {
-    const shared::Cluster &a = out.clusters[c], &e = expected[c];
+    const shared::Cluster &a = out.clusters[c], &e = expected.clusters[c];
+    const shared::ClusterPlace &place = out.places[c], &there = expected.places[c];
     EXPECT_EQ(a.faceCount, e.faceCount);
     EXPECT_EQ(a.firstMember, e.firstMember);
-    EXPECT_NEAR(a.area, e.area, 1e-6 * e.area);
-    EXPECT_LT(glm::distance(a.position, e.position), 1e-5f);
-    EXPECT_LT(glm::distance(a.normal, e.normal), 1e-5f);
     EXPECT_LT(glm::distance(a.albedo, e.albedo), 1e-6f);
-    area += static_cast<double>(a.area);
+    EXPECT_NEAR(place.area, there.area, 1e-6 * there.area);
+    EXPECT_LT(glm::distance(place.position, there.position), 1e-5f);
+    EXPECT_LT(glm::distance(place.normal, there.normal), 1e-5f);
+    area += static_cast<double>(place.area);
   }
   for (const shared::Face& face : s.faces) faceArea += static_cast<double>(face.area);
   EXPECT_NEAR(area, faceArea, 1e-6 * faceArea);

@@ -91,7 +91,7 @@ class TransferTest : public oracles::GpuTest {
     h.importBuffer("in.chunk_table", table);
     h.importBuffer("in.faces", c.faces);
     h.importBuffer("in.labels", c.labels);
-    h.importBuffer("in.clusters", oracle::describeClusters(s, c.labels, c.clusterCount));
+    h.importBuffer("in.clusters", oracle::describeClusters(s, c.labels, c.clusterCount).clusters);
     h.importBuffer("in.members", oracle::listMembers(c.labels, c.clusterCount));
     h.setCount("faces", c.faces.size());
     h.setCount("clusters", c.clusterCount);

@@ -38,8 +38,11 @@ ClusterResult clusterFaces(const VoxelStructures& structures, const ClusterSetti
 std::string checkClusters(const VoxelStructures& structures, const std::vector<uint32_t>& labels, uint32_t clusterCount,
                           float angleDegrees);
 
-std::vector<shared::Cluster> describeClusters(const VoxelStructures& structures, const std::vector<uint32_t>& labels,
-                                              uint32_t clusterCount);
+struct ClusterDescriptions {
+  std::vector<shared::Cluster> clusters;
+  std::vector<shared::ClusterPlace> places;
+};
+ClusterDescriptions describeClusters(const VoxelStructures& structures, const std::vector<uint32_t>& labels, uint32_t clusterCount);
 /// Face ids by cluster, ascending within each.
 std::vector<uint32_t> listMembers(const std::vector<uint32_t>& labels, uint32_t clusterCount);
 

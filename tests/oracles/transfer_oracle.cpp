@@ -7,8 +7,7 @@
 
 namespace radivox::oracle {
 
-std::vector<shared::Cluster> describeClusters(const VoxelStructures& structures, const std::vector<uint32_t>& labels,
-                                              uint32_t clusterCount) {
+ClusterDescriptions describeClusters(const VoxelStructures& structures, const std::vector<uint32_t>& labels, uint32_t clusterCount) {
   struct Sum {
     glm::dvec3 position{0.0}, normal{0.0}, albedo{0.0};
     double area = 0;
@@ -25,19 +24,19 @@ std::vector<shared::Cluster> describeClusters(const VoxelStructures& structures,
     sum.albedo += a * glm::dvec3(shared::decodeAlbedo(face.albedo));
     ++sum.count;
   }
-  std::vector<shared::Cluster> clusters(clusterCount);
+  ClusterDescriptions out{std::vector<shared::Cluster>(clusterCount), std::vector<shared::ClusterPlace>(clusterCount)};
   uint32_t first = 0;
   for (uint32_t c = 0; c < clusterCount; ++c) {
     const Sum& sum = sums[c];
-    clusters[c].position = glm::vec3(sum.position / sum.area);
-    clusters[c].area = static_cast<float>(sum.area);
-    clusters[c].normal = glm::vec3(glm::normalize(sum.normal));
-    clusters[c].faceCount = sum.count;
-    clusters[c].albedo = glm::vec3(sum.albedo / sum.area);
-    clusters[c].firstMember = first;
+    out.places[c].position = glm::vec3(sum.position / sum.area);
+    out.places[c].area = static_cast<float>(sum.area);
+    out.places[c].normal = glm::vec3(glm::normalize(sum.normal));
+    out.clusters[c].faceCount = sum.count;
+    out.clusters[c].albedo = glm::vec3(sum.albedo / sum.area);
+    out.clusters[c].firstMember = first;
     first += sum.count;
   }
-  return clusters;
+  return out;
 }
 
 std::vector<uint32_t> listMembers(const std::vector<uint32_t>& labels, uint32_t clusterCount) {

@@ -28,7 +28,7 @@ struct Truth {
   std::vector<uint32_t> voxels, mask, first, labels, valid, fragments, visible;
   std::vector<std::set<uint32_t>> seen;  ///< clusters by face
   std::vector<shared::Face> faces;
-  std::vector<shared::Cluster> clusters;
+  std::vector<shared::ClusterPlace> clusters;
   std::vector<glm::vec3> normals, direct, error;
   std::vector<glm::vec4> indirect;
   std::vector<float> misses;
@@ -40,7 +40,7 @@ struct Truth {
     first = run.buffer<uint32_t>("faces.first", v + 1);
     faces = run.buffer<shared::Face>("surface.faces", f);
     labels = run.buffer<uint32_t>("cluster.labels", f);
-    clusters = run.buffer<shared::Cluster>("members.clusters", c);
+    clusters = run.buffer<shared::ClusterPlace>("members.places", c);
     fragments = run.buffer<uint32_t>("fragments.count", v);
     normals = run.buffer<glm::vec3>("fragments.normal", v);
     direct = run.buffer<glm::vec3>("inject.face_irradiance", f);

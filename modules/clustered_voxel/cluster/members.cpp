@@ -17,7 +17,8 @@ void Members::declare(graph::Declaration& d) {
   d.read("voxels", "packed coordinate of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster id of each face");
-  d.write("clusters", Shape::buffer(sizeof(shared::Cluster), Extent::of("clusters")), "Cluster; grid space, h²");
+  d.write("clusters", Shape::buffer(sizeof(shared::Cluster), Extent::of("clusters")), "Cluster");
+  d.write("places", Shape::buffer(sizeof(shared::ClusterPlace), Extent::of("clusters")), "ClusterPlace; grid space, h²").optional = true;
   d.write("members", Shape::buffer(4, Extent::of("faces")), "face ids by cluster, ascending within each");
   d.scratch("starts", Shape::buffer(4, Extent::of("clusters") + 1), "first member of each cluster");
   d.scratch("cursors", Shape::buffer(4, Extent::of("clusters")), "filling level of each cluster");
@@ -34,9 +35,10 @@ void Members::prepare(graph::PrepareContext& context) {
   place_ = gpu::Pipeline(device,
                          gpu::ComputePipelineInfo{
                              .shader = "clustered_voxel/cluster/place_members.comp", .bindings = {kB, kB, kB, kB}, .pushConstantBytes = 4});
-  describe_ = gpu::Pipeline(
-      device, gpu::ComputePipelineInfo{
-                  .shader = "clustered_voxel/cluster/describe.comp", .bindings = {kB, kB, kB, kB, kB}, .pushConstantBytes = 4});
+  describe_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/cluster/describe.comp",
+                                                             .bindings = {kB, kB, kB, kB, kB, kB},
+                                                             .pushConstantBytes = 4,
+                                                             .constants = {{0, context.has("places") ? 1u : 0u}}});
 }
 
 void Members::record(graph::RecordContext& context) {
@@ -60,7 +62,8 @@ void Members::record(graph::RecordContext& context) {
   commands.push(faceCount);
   commands.dispatchItems(faceCount, kGroup);
   commands.barrier();
-  commands.bind(describe_, {context.buffer("voxels"), context.buffer("faces"), starts, members, context.buffer("clusters")});
+  commands.bind(describe_, {context.buffer("voxels"), context.buffer("faces"), starts, members, context.buffer("clusters"),
+                            context.buffer(context.has("places") ? "places" : "clusters")});
   commands.push(clusterCount);
   commands.dispatchItems(clusterCount, kGroup);
 }

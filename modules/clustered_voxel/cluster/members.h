@@ -1,8 +1,9 @@
 // clustered_voxel.members — what each cluster holds.
 //
 // reads   voxels, faces, labels
-// writes  clusters  Cluster × C  area-weighted means of position, normal and albedo, Σ a_s, and where the members begin
-//         members   u32 × F      face ids by cluster, ascending within each
+// writes  clusters  Cluster × C       area-weighted mean albedo, and where the members are
+//         places?   ClusterPlace × C  area-weighted means of position and normal, Σ a_s; made only if read
+//         members   u32 × F           face ids by cluster, ascending within each
 // runs    when the clusters change
 // cost    counting sort of F words; one lane a cluster for n log n steps of sorting and n of sums
 // source  clustered_voxel_2022 algorithm 1, lines 15 and 16; METHODS section 1

@@ -28,7 +28,8 @@ void Gather::declare(graph::Declaration& d) {
   d.read("chunk_table", "device address of each chunk");
   d.read("faces", "Face");
   d.read("voxels", "packed coordinate of each voxel");
-  d.read("clusters", "Cluster");
+  d.readIf(estimator_ == Estimator::Differential, "cluster_places", "ClusterPlace", "rays are counted, wherever clusters are").optional =
+      estimator_ != Estimator::Differential;
   d.read("cluster_radiosity", "reflected radiosity, W/m²");
   d.read("face_radiosity", "reflected radiosity, W/m²");
   d.write("irradiance", Shape::buffer(16, Extent::of("faces")), "E_indirect, W/m²; a: sky visibility").persistent = true;
@@ -70,17 +71,18 @@ void Gather::record(graph::RecordContext& context) {
   // Only a new view leaves earlier results standing.
   const bool stale = context.firstRun() || context.changed("cluster_radiosity") || context.changed("face_radiosity") ||
                      context.changed("entries") || context.changed("row_start") || context.changed("chunk_table") ||
-                     context.changed("faces") || context.changed("clusters") || context.changed("voxels") ||
+                     context.changed("faces") || context.changed("voxels") ||
+                     (context.has("cluster_places") && context.changed("cluster_places")) ||
                      (hasSky_ && (context.changed("scene.sky") || context.changed("scene.info"))) ||
                      (hasEmitted_ && (context.changed("emission") || context.changed("cluster_emission")));
   if (!faces_.record(context, context.buffer("needed"), !lazy_, stale)) return;
-  commands.bind(gather_,
-                {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"), context.buffer("clusters"),
-                 context.buffer("cluster_radiosity"), context.buffer("face_radiosity"), context.buffer("faces"), context.buffer("voxels"),
-                 context.buffer("irradiance"), context.buffer(context.has("error") ? "error" : "irradiance"),
-                 context.buffer(hasSky_ ? "scene.sky" : "faces"), context.buffer(hasSky_ ? "scene.info" : "faces"),
-                 context.buffer(hasSky_ ? "sky" : "irradiance"), context.buffer(hasEmitted_ ? "emission" : "faces"),
-                 context.buffer(hasEmitted_ ? "cluster_emission" : "faces"), context.buffer(hasEmitted_ ? "emitted" : "irradiance")});
+  commands.bind(gather_, {context.buffer("list"), status, context.buffer("row_start"), context.buffer("chunk_table"),
+                          context.buffer(context.has("cluster_places") ? "cluster_places" : "faces"), context.buffer("cluster_radiosity"),
+                          context.buffer("face_radiosity"), context.buffer("faces"), context.buffer("voxels"), context.buffer("irradiance"),
+                          context.buffer(context.has("error") ? "error" : "irradiance"), context.buffer(hasSky_ ? "scene.sky" : "faces"),
+                          context.buffer(hasSky_ ? "scene.info" : "faces"), context.buffer(hasSky_ ? "sky" : "irradiance"),
+                          context.buffer(hasEmitted_ ? "emission" : "faces"), context.buffer(hasEmitted_ ? "cluster_emission" : "faces"),
+                          context.buffer(hasEmitted_ ? "emitted" : "irradiance")});
   struct {
     uint32_t clusterCount, faceCount;
   } push{static_cast<uint32_t>(context.count("clusters")), faceCount};

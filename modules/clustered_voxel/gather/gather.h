@@ -1,6 +1,6 @@
 // clustered_voxel.gather — irradiance of the voxel faces that the view needs, and of no others.
 //
-// reads   needed; visibility row_start, entries, chunk_table; clusters, cluster_radiosity, face_radiosity; faces, voxels; scene.sky?,
+// reads   needed; visibility row_start, entries, chunk_table; cluster_places (differential), cluster_radiosity, face_radiosity; faces, voxels; scene.sky?,
 //         scene.info?; emission?, cluster_emission?
 // writes  irradiance* vec4 × F  E_indirect, W/m²; a: sky visibility, the share of rays that left the scene; meaningful where valid
 //         sky*        vec4 × F  E_sky, W/m², only where the sky has an image; elsewhere it is π L × sky visibility

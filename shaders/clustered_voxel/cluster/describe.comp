@@ -13,6 +13,8 @@ layout(push_constant, scalar) uniform Push { uint clusterCount; };
 layout(set = 0, binding = 2, scalar) readonly buffer Starts { uint starts[]; };
 layout(set = 0, binding = 3, scalar) buffer Members { uint members[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer Clusters { Cluster clusters[]; };
+layout(set = 0, binding = 5, scalar) writeonly buffer Places { ClusterPlace places[]; };
+layout(constant_id = 0) const bool kPlaces = false;  // somebody reads them
 
 // Lets members[begin + hole] sink to its place in the heap of `count` members.
 void sink(uint begin, uint hole, uint count) {
@@ -67,13 +69,17 @@ void main() {
     addTo(normal, face.area * decodeNormal(face.normal));
     addTo(albedo, face.area * decodeAlbedo(face.albedo));
   }
+  float whole = area.high + area.low;
   Cluster cluster;
-  cluster.area = area.high + area.low;
-  cluster.position = (position.high + position.low) / cluster.area;
-  cluster.albedo = (albedo.high + albedo.low) / cluster.area;
-  // No member is farther than a right angle from the others' mean (cluster.h), so this is no zero vector.
-  cluster.normal = normalize(normal.high + normal.low);
+  cluster.albedo = (albedo.high + albedo.low) / whole;
   cluster.faceCount = end - begin;
   cluster.firstMember = begin;
   clusters[c] = cluster;
+  if (!kPlaces) return;
+  ClusterPlace place;
+  place.area = whole;
+  place.position = (position.high + position.low) / whole;
+  // No member is farther than a right angle from the others' mean (cluster.h), so this is no zero vector.
+  place.normal = normalize(normal.high + normal.low);
+  places[c] = place;
 }

@@ -15,7 +15,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer ListBuffer { uint list[]; }
 layout(set = 0, binding = 1, scalar) readonly buffer StatusBuffer { uint status[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer RowStartBuffer { uint rowStart[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer ChunkBuffer { uvec2 chunkTable[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer ClusterBuffer { Cluster clusters[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer PlaceBuffer { ClusterPlace places[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer ClusterRadiosityBuffer { vec3 clusterRadiosity[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer FaceRadiosityBuffer { vec3 faceRadiosity[]; };
 layout(set = 0, binding = 7, scalar) readonly buffer FacesBuffer { Face faces[]; };
@@ -74,7 +74,7 @@ void main() {
     if (id < clusterCount) {
       b = clusterRadiosity[id];
       if (kEstimator == 1)
-        weight = differentialFormFactor(x, axis, clusters[id].position, clusters[id].normal, clusters[id].area);
+        weight = differentialFormFactor(x, axis, places[id].position, places[id].normal, places[id].area);
     } else {
       uint t = id - clusterCount;
       b = faceRadiosity[t];
