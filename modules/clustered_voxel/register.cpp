@@ -3,6 +3,7 @@
 #include "modules/clustered_voxel/bounce/bounce.h"
 #include "modules/clustered_voxel/cluster/cluster.h"
 #include "modules/clustered_voxel/cluster/members.h"
+#include "modules/clustered_voxel/cluster/shares.h"
 #include "modules/clustered_voxel/filter/filter.h"
 #include "modules/clustered_voxel/gather/gather.h"
 #include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
@@ -34,6 +35,7 @@ void registerNodes(plugin::Registry& registry) {
   registry.add<Visibility>("what each voxel face sees: form factors by counting rays");
   registry.add<Cluster>("groups faces that lie near each other and face the same way");
   registry.add<Members>("what each cluster holds, and its means");
+  registry.add<Shares>("how much each member counts in its cluster's means");
   registry.add<Transfer>("form factors between clusters, a sparse matrix");
   registry.add<Sky>("light of the sky on voxel faces, from the rays that left the scene");
   registry.add<Inject>("direct light at voxel faces, by shadow-map flux or the paper's points");

@@ -11,6 +11,7 @@
 
 #include "engine/scene/builtin.h"
 #include "modules/clustered_voxel/cluster/members.h"
+#include "shaders/shared/cluster_member.h"
 #include "tests/oracles/cluster_oracle.h"
 #include "tests/oracles/gpu_fixture.h"
 #include "tests/oracles/node_harness.h"
@@ -208,6 +209,19 @@ TEST_F(ClusterTest, SlowMembersAreListedAndDescribed) {
   }
   for (const shared::Face& face : s.faces) faceArea += static_cast<double>(face.area);
   EXPECT_NEAR(area, faceArea, 1e-6 * faceArea);
+}
+
+// For weights of any size a share is its weight over the largest, to the nearest of 255 steps.
+TEST(ClusterMembers, SharesAreRoundedToTheNearestStep) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 100000; ++i) {
+    const auto draw = [&] { return static_cast<uint32_t>(random()); };
+    const uint32_t greatest = std::max(draw() >> (draw() % 32), 1u), weight = i % 7 == 0 ? greatest : draw() % greatest;
+    const uint32_t member = shared::memberWith(0xabcdefu, weight, greatest);
+    EXPECT_EQ(shared::memberFace(member), 0xabcdefu);
+    EXPECT_NEAR(shared::memberShare(member), 255.0 * weight / greatest, 0.5 + 0.02) << weight << " of " << greatest;
+  }
+  EXPECT_EQ(shared::memberShare(shared::memberWith(1, 0xffffffffu, 0xffffffffu)), 255u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/scene/builtin.h"
+#include "shaders/shared/cluster_member.h"
 #include "shaders/shared/visibility_row.h"
 #include "shaders/shared/voxel_codec.h"
 #include "tests/oracles/gpu_fixture.h"
@@ -107,8 +108,8 @@ TEST_F(Render, SlowGatherIsTheMeanOfItsRowAndKnowsItsSpread) {
 
 TEST_F(Render, ClustersSendBackTheWeightedMeanOfTheirFaces) {
   PipelineOptions options = small(20);
-  options.outputs = {"composite.color", "inject.cluster_radiosity", "inject.face_irradiance", "visibility.weights", "surface.faces",
-                     "cluster.labels"};
+  options.outputs = {"composite.color", "inject.cluster_radiosity", "inject.face_irradiance", "visibility.weights",
+                     "shares.members",  "members.clusters",         "surface.faces",          "cluster.labels"};
   Pipeline p(oracles::sharedDevice(), scene::makeBuiltin("cornell_point"), options);
   p.run();
   const size_t faceCount = p.count("faces"), clusterCount = p.count("clusters");
@@ -116,12 +117,21 @@ TEST_F(Render, ClustersSendBackTheWeightedMeanOfTheirFaces) {
   const auto weights = p.buffer<uint32_t>("visibility.weights", faceCount), labels = p.buffer<uint32_t>("cluster.labels", faceCount);
   const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance", faceCount);
   const auto radiosity = p.buffer<glm::vec3>("inject.cluster_radiosity", clusterCount);
+  const auto clusters = p.buffer<shared::Cluster>("members.clusters", clusterCount);
+  const auto members = p.buffer<uint32_t>("shares.members", faceCount);
   std::vector<double> seen(clusterCount), total(clusterCount), sum(clusterCount);
-  for (size_t s = 0; s < faceCount; ++s) seen[labels[s]] += weights[s];
-  for (size_t s = 0; s < faceCount; ++s) {
-    const double w = seen[labels[s]] > 0 ? weights[s] : static_cast<double>(faces[s].area);
-    total[labels[s]] += w;
-    sum[labels[s]] += w * static_cast<double>(shared::decodeAlbedo(faces[s].albedo).y * irradiance[s].y);
+  for (size_t s = 0; s < faceCount; ++s) seen[labels[s]] = std::max(seen[labels[s]], static_cast<double>(weights[s]));
+  for (size_t c = 0; c < clusterCount; ++c) {
+    for (uint32_t i = 0; i < clusters[c].faceCount; ++i) {
+      const uint32_t member = members[clusters[c].firstMember + i], s = shared::memberFace(member);
+      ASSERT_LT(s, faceCount);
+      ASSERT_EQ(labels[s], c);
+      const double share = shared::memberShare(member);
+      EXPECT_NEAR(share, seen[c] > 0 ? 255.0 * weights[s] / seen[c] : 0.0, 0.5 + 1e-3);
+      const double w = seen[c] > 0 ? share : static_cast<double>(faces[s].area);
+      total[c] += w;
+      sum[c] += w * static_cast<double>(shared::decodeAlbedo(faces[s].albedo).y * irradiance[s].y);
+    }
   }
   size_t lit = 0, unseen = 0;
   for (size_t c = 0; c < clusterCount; ++c) {

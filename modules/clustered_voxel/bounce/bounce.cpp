@@ -75,12 +75,11 @@ void Bounce::declare(graph::Declaration& d) {
     d.readIf(needsRows, name, "rows of the faces",
              bounces > 1 ? "the last bounce goes to clusters" : "one bounce needs no light between clusters");
   d.read("clusters", "Cluster");
-  d.read("members", "face ids by cluster");
+  d.read("members", "members of the clusters, with their shares in its means");
   d.readIf(needsRows, "labels", "cluster id of each face", "faces receive what their cluster does").optional = true;
   d.read("faces", "Face");
   const char* noEmission = d.traits.emissiveTriangleCount == 0 ? "nothing emits" : "emitters light through samples, in inject";
   d.readIf(emits, "emission", "mean B_e of each face, W/m²", noEmission).optional = !emits;
-  d.readIf(emits, "weights", "how much of each face others see, for the mean of emission", noEmission);
   d.read("face_irradiance", "E_dir of each face, W/m²");
   d.read("direct_radiosity", "reflected direct light of each cluster, W/m²", graph::UseCompute | graph::UseTransfer);
   d.write("cluster_radiosity", Shape::buffer(12, Extent::of("clusters")), "reflected radiosity, W/m²");
@@ -106,7 +105,7 @@ void Bounce::declare(graph::Declaration& d) {
 void Bounce::prepare(graph::PrepareContext& context) {
   gpu::Device& device = context.device();
   if (context.has("emission")) {
-    meanEmission_ = makePipeline(device, "clustered_voxel/bounce/mean_emission.comp", 6, {{0, context.has("weights") ? 1u : 0u}});
+    meanEmission_ = makePipeline(device, "clustered_voxel/bounce/mean_emission.comp", 5);
     receiveEmission_ = makePipeline(device, "clustered_voxel/bounce/receive_emission.comp", 3);
   }
   if (context.has("entries")) {
@@ -183,8 +182,8 @@ void Bounce::record(graph::RecordContext& context) {
 void Bounce::recordEmission(graph::RecordContext& context, const BouncePush& push) const {
   gpu::Commands& commands = context.commands();
   const gpu::Buffer& mean = context.buffer("cluster_emission");
-  commands.bind(meanEmission_, {context.buffer("clusters"), context.buffer("members"), context.buffer("faces"), context.buffer("emission"),
-                                mean, context.buffer(context.has("weights") ? "weights" : "members")});
+  commands.bind(meanEmission_,
+                {context.buffer("clusters"), context.buffer("members"), context.buffer("faces"), context.buffer("emission"), mean});
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
   commands.barrier();

@@ -2,7 +2,6 @@
 //
 // reads   row_start, entries, sky of transfer (not needed for one bounce without emitters by rays); clusters, members, faces; labels,
 //         visibility_row_start, visibility_entries, chunk_table (last=faces; optional): rows of visibility
-//         weights? of visibility, for means of emission (absent: areas);
 //         face_irradiance and direct_radiosity of inject; emission where emitters light through rays (Traits::emittersByRays)
 // writes  cluster_radiosity  vec3 × C  reflected B, W/m², without emission; 0: black or unlit
 //         face_radiosity     vec3 × F  likewise: ρ_s (E_dir,s + E_emit + E_ind), direct light at the detail of faces

@@ -36,8 +36,7 @@ void Inject::declare(graph::Declaration& d) {
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("clusters", "Cluster");
-  d.read("members", "face ids by cluster");
-  d.read("weights", "how much of each face others see").optional = true;
+  d.read("members", "members of the clusters, with their shares in its means: shared/cluster_member.h");
   d.readIf(lit_ && method_ == Method::Splat, "triangle_first", "first triangle of each voxel", "no texels are splatted");
   d.readIf(lit_ && method_ == Method::Splat, "triangle_ids", "triangles of each voxel, and faces they are no part of",
            "no texels are splatted");
@@ -77,10 +76,9 @@ void Inject::prepare(graph::PrepareContext& context) {
                                                              .bindings = {kB, kB, kB, kI, kB, kB, kB, kB, kB, kB},
                                                              .pushConstantBytes = 8});
   }
-  clusters_ = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/clusters.comp",
-                                                             .bindings = {kB, kB, kB, kB, kB, kB},
-                                                             .pushConstantBytes = 4,
-                                                             .constants = {{0, context.has("weights") ? 1u : 0u}}});
+  clusters_ = gpu::Pipeline(
+      device,
+      gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/clusters.comp", .bindings = {kB, kB, kB, kB, kB}, .pushConstantBytes = 4});
 }
 
 void Inject::record(graph::RecordContext& context) {
@@ -161,8 +159,7 @@ void Inject::record(graph::RecordContext& context) {
     commands.dispatchItems(faceCount, kGroup);
     commands.barrier();
   }
-  commands.bind(clusters_, {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), irradiance, radiosity,
-                            context.buffer(context.has("weights") ? "weights" : "members")});
+  commands.bind(clusters_, {context.buffer("faces"), context.buffer("clusters"), context.buffer("members"), irradiance, radiosity});
   commands.push(clusterCount);
   commands.dispatchItems(clusterCount, kGroup);
 }

@@ -33,8 +33,9 @@ void Transfer::declare(graph::Declaration& d) {
   d.read("faces", "Face");
   d.read("labels", "cluster id of each face").frees = true;
   d.read("clusters", "Cluster");
-  d.read("members", "face ids by cluster");
-  d.read("weights", "how much of each face others see").optional = true;
+  d.read("members", "members of the clusters");
+  graph::Port& weights = d.read("weights", "how much of each face others see");
+  weights.optional = weights.frees = true;
   d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
   d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend")
       .growable = true;

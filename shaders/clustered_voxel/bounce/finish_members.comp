@@ -4,6 +4,7 @@
 // B_s = ρ_s (E_dir,s + E_emit + E_ind): direct light at the detail of faces; the rest as the face's cluster received it. One lane a cluster, so that
 // no face needs to know its cluster.
 #include "clustered_voxel/bounce/bounce_types.h"
+#include "shared/cluster_member.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_codec.h"
 layout(local_size_x = 64) in;
@@ -20,7 +21,7 @@ void main() {
   uint c = radivoxItemIndex();
   if (c >= push.clusterCount) return;
   for (uint i = 0u; i < clusters[c].faceCount; ++i) {
-    uint s = members[clusters[c].firstMember + i];
+    uint s = memberFace(members[clusters[c].firstMember + i]);
     vec3 irradiance = faceIrradiance[s] + indirect[c];
     if (push.hasEmission != 0u) irradiance += received[c];
     radiosity[s] = decodeAlbedo(faces[s].albedo) * irradiance;

@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// B_e of each cluster: Σ w B_e / Σ w over its faces, in order.
+// B_e of each cluster: Σ w B_e / Σ w over its faces, in order; w: shares, or areas where there are none.
 #include "clustered_voxel/bounce/bounce_types.h"
 #include "clustered_voxel/compensated.glsl"
+#include "shared/cluster_member.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel.h"
 layout(local_size_x = 64) in;
@@ -13,9 +14,6 @@ layout(set = 0, binding = 1, scalar) readonly buffer Members { uint members[]; }
 layout(set = 0, binding = 2, scalar) readonly buffer Faces { Face faces[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer Emission { vec3 emission[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer Mean { vec3 meanEmission[]; };
-layout(constant_id = 0) const bool kWeighted = false;
-#define RADIVOX_BIND_WEIGHTS 5
-#include "clustered_voxel/weights.glsl"
 
 void main() {
   uint c = radivoxItemIndex();
@@ -23,10 +21,11 @@ void main() {
   Cluster cluster = clusters[c];
   CompensatedSum3 sum = CompensatedSum3(vec3(0.0), vec3(0.0));
   CompensatedSum total = CompensatedSum(0.0, 0.0);
-  for (uint byArea = kWeighted ? 0u : 1u; byArea < 2u && total.high == 0.0; ++byArea) {
+  for (uint byArea = 0u; byArea < 2u && total.high == 0.0; ++byArea) {
     for (uint i = 0; i < cluster.faceCount; ++i) {
-      uint s = members[cluster.firstMember + i];
-      float weight = weightOf(s, byArea == 1u);
+      uint member = members[cluster.firstMember + i];
+      uint s = memberFace(member);
+      float weight = byArea == 1u ? faces[s].area : float(memberShare(member));
       addTo(sum, weight * emission[s]);
       addTo(total, weight);
     }

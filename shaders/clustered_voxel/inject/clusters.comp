@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// Reflected direct light of each cluster: Σ w ρ E_dir / Σ w, over members in ascending order, so the bits never vary.
+// Reflected direct light of each cluster: Σ w ρ E_dir / Σ w, w the shares of the members, or their areas where there are none; over members in ascending order, so the bits never vary.
+#include "shared/cluster_member.h"
 #include "shared/dispatch.glsl"
 #include "shared/voxel_codec.h"
 #include "shared/voxel.h"
@@ -14,19 +15,17 @@ layout(set = 0, binding = 2, scalar) readonly buffer MemberBuffer { uint members
 layout(set = 0, binding = 3, scalar) readonly buffer IrradianceBuffer { vec3 irradiance[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer RadiosityBuffer { vec3 radiosity[]; };
 layout(push_constant, scalar) uniform Push { uint clusterCount; };
-layout(constant_id = 0) const bool kWeighted = false;
-#define RADIVOX_BIND_WEIGHTS 5
-#include "clustered_voxel/weights.glsl"
 
 void main() {
   uint c = radivoxItemIndex();
   if (c >= clusterCount) return;
   vec3 sum = vec3(0.0);
   float total = 0.0;
-  for (uint byArea = kWeighted ? 0u : 1u; byArea < 2u && total == 0.0; ++byArea) {
+  for (uint byArea = 0u; byArea < 2u && total == 0.0; ++byArea) {
     for (uint i = 0; i < clusters[c].faceCount; ++i) {
-      uint s = members[clusters[c].firstMember + i];
-      float weight = weightOf(s, byArea == 1u);
+      uint member = members[clusters[c].firstMember + i];
+      uint s = memberFace(member);
+      float weight = byArea == 1u ? faces[s].area : float(memberShare(member));
       sum += weight * decodeAlbedo(faces[s].albedo) * irradiance[s];
       total += weight;
     }

@@ -3,6 +3,7 @@
 // have bits is kept in a set of its own: a cluster's work follows what its rows name, not how many clusters there are.
 #ifndef RADIVOX_TRANSFER_COLUMNS_GLSL
 #define RADIVOX_TRANSFER_COLUMNS_GLSL
+#include "shared/cluster_member.h"
 #include "shared/dispatch.glsl"
 #include "shared/visibility_rows.glsl"
 
@@ -19,7 +20,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer ChunkTable { uvec2 chunkTab
 layout(set = 0, binding = 2) uniform usamplerBuffer labels;
 layout(set = 0, binding = 3, scalar) readonly buffer Clusters { Cluster clusters[]; };
 layout(set = 0, binding = 4) uniform usamplerBuffer members;
-uint memberAt(uint i) { return texelFetch(members, int(i)).x; }
+uint memberAt(uint i) { return memberFace(texelFetch(members, int(i)).x); }
 
 layout(constant_id = 1) const uint kLanes = 64u;  // 64 or a part of it
 const uint kWindow = 65536u;

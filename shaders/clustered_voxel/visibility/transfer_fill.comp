@@ -11,9 +11,11 @@
 layout(set = 0, binding = 5, scalar) readonly buffer Starts { uint starts[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer FaceAreas { Face faces[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer Sky { float sky[]; };
-layout(constant_id = 0) const bool kWeighted = false;
-#define RADIVOX_BIND_WEIGHTS 8
-#include "clustered_voxel/weights.glsl"
+layout(set = 0, binding = 8, scalar) readonly buffer Weights { uint weights[]; };
+layout(constant_id = 0) const bool kWeighted = false;  // weights are there
+
+// What a face counts for in its cluster's row: how much of it others see; its area where that is not given, or nobody sees any face of the cluster.
+float weightOf(uint face, bool byArea) { return byArea ? faces[face].area : float(weights[face]); }
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer MatrixEntry { uint value; };
 // Entries are found from the row's address: their number times four does not fit 32 bits in large scenes.
