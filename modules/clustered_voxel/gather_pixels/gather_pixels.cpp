@@ -55,7 +55,7 @@ void GatherPixels::declare(graph::Declaration& d) {
   const Shape image = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
   d.read("position", "relative world m, w: distance along the view axis, 0: sky");
   d.read("normal", "unit shading normal");
-  declareStructure(d);
+  declareStructure(d, false);
   d.read("distance", "bricks to the nearest occupied brick, four bytes a word");
   d.read("planes", "what rays are stopped by");
   d.read("plane_extras", "where the planes of a voxel after its first are");
@@ -211,7 +211,8 @@ void GatherPixels::record(graph::RecordContext& context) {
                  optional("corners", context.has("corners")),
                  optional("sky_irradiance", context.has("sky_irradiance")),
                  hasEmitted_ ? context.image("raw_emitted") : absent_,
-                 hasSky_ ? context.image("raw_sky") : absent_});
+                 hasSky_ ? context.image("raw_sky") : absent_},
+                "first");
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);
   for (push.firstRay = 0; push.firstRay < rays_; push.firstRay = push.endRay) {

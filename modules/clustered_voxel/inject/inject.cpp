@@ -32,7 +32,8 @@ void Inject::declare(graph::Declaration& d) {
   d.read("occupancy", "two words a brick");
   d.read("rank", "occupied voxels before the brick");
   d.read("voxels", "packed coordinate of each voxel");
-  d.read("mask", "faces of each voxel");
+  const char* noSplat = lit_ ? "no texels are splatted" : "nothing lights the scene";
+  d.readIf(lit_ && method_ == Method::Splat, "planes", "which faces each voxel has: shared/voxel_plane.h", noSplat);
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("clusters", "Cluster");
@@ -118,7 +119,7 @@ void Inject::record(graph::RecordContext& context) {
                            context.buffer("grid"),
                            context.buffer("occupancy"),
                            context.buffer("rank"),
-                           context.buffer("mask"),
+                           *context.grown("planes").front(),
                            context.buffer("first"),
                            irradiance,
                            viewTable,

@@ -69,7 +69,7 @@ void Visibility::declare(graph::Declaration& d) {
   d.read("rank", "occupied voxels before the brick");
   d.read("voxels", "packed coordinate of each voxel");
   d.read("distance", "bricks to the nearest occupied brick, a byte a brick");
-  d.read("mask", "faces of each voxel");
+  d.read("mask", "faces of each voxel; planes hold them too").frees = true;
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster of each face");

@@ -10,7 +10,7 @@
 #define RADIVOX_BIND_GRID 6
 #define RADIVOX_BIND_OCCUPANCY 7
 #define RADIVOX_BIND_RANK 8
-#define RADIVOX_BIND_FACE_MASK 9
+#define RADIVOX_BIND_PLANE_MASK 9
 #define RADIVOX_BIND_FIRST_FACE 10
 #include "shared/face_shares.h"
 #include "shared/voxel_lookup.glsl"
