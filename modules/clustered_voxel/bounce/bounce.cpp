@@ -91,11 +91,10 @@ void Bounce::declare(graph::Declaration& d) {
              "iterations; residual (float bits); 1: fell back; 1: residual reached, 2: rounding, 0: neither");
   d.scratch("control", Shape::buffer(sizeof(BounceControl), 1), "state of the solver",
             graph::UseCompute | graph::UseTransfer | graph::UseIndirect);
-  // Where nothing emits by rays, B⁰ is direct_radiosity. E_ind = F B lies in cluster_radiosity until that takes its place.
+  // Where nothing emits by rays, B⁰ is direct_radiosity. In cluster_radiosity lies the last change of B, then E_ind = F B, until B takes its place.
   if (emits) d.scratch("source", Shape::buffer(12, Extent::of("clusters")), "B⁰");
   if (needsMatrix) {
     d.scratch("iterate", Shape::buffer(24, Extent::of("clusters")), "B before and after a step");
-    d.scratch("steps", Shape::buffer(12, Extent::of("clusters")), "last change of B");
   }
   if (emits) {
     d.scratch("received", Shape::buffer(12, Extent::of("clusters")), "E_emit = F B_e");
@@ -111,7 +110,8 @@ void Bounce::prepare(graph::PrepareContext& context) {
   if (context.has("entries")) {
     source_ = makePipeline(device, "clustered_voxel/bounce/source.comp", 6);
     begin_ = makePipeline(device, "clustered_voxel/bounce/begin.comp", 4);
-    sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 7);
+    sweep_ = makePipeline(device, "clustered_voxel/bounce/sweep.comp", 6);
+    receive_ = makePipeline(device, "clustered_voxel/bounce/receive.comp", 4);
     finishClusters_ = makePipeline(device, "clustered_voxel/bounce/finish_clusters.comp", 3);
   }
   hasRows_ = context.has("visibility_entries") && context.has("labels");
@@ -239,7 +239,7 @@ void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push,
   const bool emits = push.hasEmission != 0;
   const gpu::Buffer& source = sourceOf(context);
   const gpu::Buffer& iterate = context.buffer("iterate");
-  const gpu::Buffer& steps = context.buffer("steps");
+  const gpu::Buffer& steps = context.buffer("cluster_radiosity");
   commands.bind(source_, {context.buffer("clusters"), direct, emits ? context.buffer("received") : direct, context.buffer("sky"),
                           emits ? source : iterate, control});
   commands.push(push);
@@ -249,13 +249,16 @@ void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push,
   commands.push(push);
   commands.dispatchItems(push.clusterCount, kGroup);
   commands.barrier();
-  commands.bind(sweep_, {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps,
-                         context.buffer("cluster_radiosity"), control});
+  commands.bind(sweep_, {context.buffer("row_start"), context.buffer("clusters"), source, iterate, steps, control});
   commands.push(push);
   for (uint32_t i = 0; i < count; ++i) {
     commands.dispatchIndirect(control, offsetof(BounceControl, groups));
     commands.barrier();
   }
+  commands.bind(receive_, {context.buffer("row_start"), iterate, steps, control});
+  commands.push(push);
+  commands.dispatchItems(push.clusterCount, kRowsPerGroup);
+  commands.barrier();
 }
 
 void Bounce::frameDone(graph::RecordContext& context) {

@@ -59,7 +59,7 @@ class Bounce : public graph::Node {
   uint32_t iterations_ = 1000;
   bool hasRows_ = false;
   params::Table table_;
-  gpu::Pipeline meanEmission_, receiveEmission_, source_, begin_, sweep_, finishClusters_, finishFaces_;
+  gpu::Pipeline meanEmission_, receiveEmission_, source_, begin_, sweep_, receive_, finishClusters_, finishFaces_;
 };
 
 }  // namespace radivox::clustered_voxel

@@ -24,6 +24,9 @@ uint entryAt(uint index) {
   return MatrixEntry(uvec2(addressLow, push.matrix.y + high + carry)).value;
 }
 
+// The solution is nowhere below 0, and iterates are, by what is small beside the brightest: where sweeps finish, that counts as 0.
+vec3 leastIterate(uint phase) { return vec3(phase == kPhaseFinish ? 0.0 : uintBitsToFloat(0xff800000u)); }
+
 const uint kRowLanes = 8u;
 shared vec3 laneHigh[64];
 shared vec3 laneLow[64];

@@ -8,8 +8,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer Clusters { Cluster clusters
 layout(set = 0, binding = 2, scalar) readonly buffer Source { vec3 source[]; };
 layout(set = 0, binding = 3, scalar) buffer Iterate { vec3 iterate[]; };  // two vectors; sweeps read one and write the other in turn
 layout(set = 0, binding = 4, scalar) buffer Steps { vec3 steps[]; };
-layout(set = 0, binding = 5, scalar) writeonly buffer Indirect { vec3 indirect[]; };
-layout(set = 0, binding = 6, scalar) coherent buffer Control { BounceControl control; };
+layout(set = 0, binding = 5, scalar) coherent buffer Control { BounceControl control; };
 
 const uint kWarmUpSweeps = 8u;
 const uint kWindowSweeps = 16u;
@@ -108,8 +107,7 @@ void main() {
   bool isChebyshev = control.phase == kPhaseChebyshev;
   bool isWarmUp = control.phase == kPhaseWarmUp;
   vec3 omega = control.omega;
-  // The solution is nowhere below 0, and iterates are, by what is small beside the brightest.
-  vec3 least = vec3(control.phase == kPhaseFinish ? 0.0 : uintBitsToFloat(0xff800000u));
+  vec3 least = leastIterate(control.phase);
   uint c = rowOfLane();
   vec3 received;
 #define RADIVOX_VECTOR(i) max(iterate[readFrom + (i)], least)
@@ -123,7 +121,6 @@ void main() {
     vec3 next = isChebyshev ? omega * residual + (omega - 1.0) * step : residual;
     iterate[writeTo + c] = isChebyshev ? x + next : b + reflected;
     steps[c] = next;
-    indirect[c] = max(received, vec3(0.0));
     for (uint k = 0; k < 3u; ++k) {
       atomicMax(groupResidual[k], floatBitsToUint(abs(residual[k])));
       atomicMax(groupSize[k], floatBitsToUint(abs(x[k])));
