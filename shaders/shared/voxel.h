@@ -36,10 +36,10 @@ struct Face {
 // Bit of Face::position: no surface shows its front here, and the face is made of the backs of one-sided surfaces.
 RADIVOX_CONST uint kMadeOfBacks = 0x80000000u;
 
+// C + 1 of them: the members of one end where those of the next begin, and the last begins at F.
 struct Cluster {
   vec3 albedo;      // area-weighted mean ρ
-  uint firstMember; // into cluster.members
-  uint faceCount;
+  uint firstMember; // into the members
 };
 
 // Where a cluster is: few ask.

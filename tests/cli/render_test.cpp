@@ -189,7 +189,7 @@ TEST_F(RenderCommand, SlowMemoryAVoxelIsBounded) {
                                                   "--set", "visibility.rays=16", "--set", "voxelize.resolution=64"})));
   const json stats = json::parse(read("a.json"));
   const json& memory = stats.at("memory");
-  EXPECT_LT(stats.at("bytes_per_voxel").get<double>(), 375.0) << memory.dump(2);
+  EXPECT_LT(stats.at("bytes_per_voxel").get<double>(), 250.0) << memory.dump(2);
   EXPECT_LT(memory.at("device_peak").get<double>(), 1.5 * memory.at("device_current").get<double>());
 }
 

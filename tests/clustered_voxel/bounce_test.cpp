@@ -75,7 +75,6 @@ Case randomCase(uint32_t clusterCount, uint32_t entryCount, double darkest, doub
     const float area[2] = {0.3f, 1.1f};
     const float whole = area[0] + area[1];
     c.areas.push_back(whole);
-    cluster.faceCount = 2;
     cluster.firstMember = 2 * i;
     glm::vec3 weighted(0.f), direct(0.f);
     for (int f = 0; f < 2; ++f) {
@@ -135,18 +134,17 @@ class BounceTest : public oracles::GpuTest {
     std::vector<uint32_t> rowStart{0};
     std::vector<uint32_t> entries;
     const uint32_t weightBits = shared::transferWeightBits(c.clusterCount());
-    std::vector<float> sky;
     for (uint32_t i = 0; i < c.clusterCount(); ++i) {
       for (const auto& [j, w] : c.matrix.rows[i])
         entries.push_back(shared::packTransferEntry(j, static_cast<uint32_t>(std::ldexp(w, static_cast<int>(weightBits))), weightBits));
       rowStart.push_back(static_cast<uint32_t>(entries.size()));
-      sky.push_back(static_cast<float>(c.matrix.sky[i]));
     }
     oracles::NodeHarness h(device(), traits, request);
     h.importBuffer("in.row_start", rowStart);
     h.importBuffer("in.entries", entries);
-    h.importBuffer("in.sky", sky);
-    h.importBuffer("in.clusters", c.clusters);
+    std::vector<shared::Cluster> clusters = c.clusters;
+    clusters.push_back({glm::vec3(0.f), static_cast<uint32_t>(c.members.size())});
+    h.importBuffer("in.clusters", clusters);
     h.importBuffer("in.members", c.members);
     h.importBuffer("in.labels", c.labels);
     h.importBuffer("in.faces", c.faces);
@@ -157,7 +155,7 @@ class BounceTest : public oracles::GpuTest {
     h.setCount("faces", c.faces.size());
     h.add<clustered_voxel::Bounce>("bounce");
     for (const char* port :
-         {"row_start", "entries", "sky", "clusters", "members", "labels", "faces", "emission", "face_irradiance", "direct_radiosity"})
+         {"row_start", "entries", "clusters", "members", "labels", "faces", "emission", "face_irradiance", "direct_radiosity"})
       h.connect(std::string("in.") + port, std::string("bounce.") + port);
     for (const auto& [name, value] : settings) h.set("bounce." + name, value);
     for (const char* port : {"cluster_radiosity", "face_radiosity", "status"}) h.output(std::string("bounce.") + port);

@@ -24,18 +24,18 @@ ClusterDescriptions describeClusters(const VoxelStructures& structures, const st
     sum.albedo += a * glm::dvec3(shared::decodeAlbedo(face.albedo));
     ++sum.count;
   }
-  ClusterDescriptions out{std::vector<shared::Cluster>(clusterCount), std::vector<shared::ClusterPlace>(clusterCount)};
+  ClusterDescriptions out{std::vector<shared::Cluster>(clusterCount + 1), std::vector<shared::ClusterPlace>(clusterCount)};
   uint32_t first = 0;
   for (uint32_t c = 0; c < clusterCount; ++c) {
     const Sum& sum = sums[c];
     out.places[c].position = glm::vec3(sum.position / sum.area);
     out.places[c].area = static_cast<float>(sum.area);
     out.places[c].normal = glm::vec3(glm::normalize(sum.normal));
-    out.clusters[c].faceCount = sum.count;
     out.clusters[c].albedo = glm::vec3(sum.albedo / sum.area);
     out.clusters[c].firstMember = first;
     first += sum.count;
   }
+  out.clusters[clusterCount].firstMember = first;
   return out;
 }
 

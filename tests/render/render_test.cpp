@@ -117,13 +117,13 @@ TEST_F(Render, ClustersSendBackTheWeightedMeanOfTheirFaces) {
   const auto weights = p.buffer<uint32_t>("visibility.weights", faceCount), labels = p.buffer<uint32_t>("cluster.labels", faceCount);
   const auto irradiance = p.buffer<glm::vec3>("inject.face_irradiance", faceCount);
   const auto radiosity = p.buffer<glm::vec3>("inject.cluster_radiosity", clusterCount);
-  const auto clusters = p.buffer<shared::Cluster>("members.clusters", clusterCount);
+  const auto clusters = p.buffer<shared::Cluster>("members.clusters", clusterCount + 1);
   const auto members = p.buffer<uint32_t>("shares.members", faceCount);
   std::vector<double> seen(clusterCount), total(clusterCount), sum(clusterCount);
   for (size_t s = 0; s < faceCount; ++s) seen[labels[s]] = std::max(seen[labels[s]], static_cast<double>(weights[s]));
   for (size_t c = 0; c < clusterCount; ++c) {
-    for (uint32_t i = 0; i < clusters[c].faceCount; ++i) {
-      const uint32_t member = members[clusters[c].firstMember + i], s = shared::memberFace(member);
+    for (uint32_t i = clusters[c].firstMember; i < clusters[c + 1].firstMember; ++i) {
+      const uint32_t member = members[i], s = shared::memberFace(member);
       ASSERT_LT(s, faceCount);
       ASSERT_EQ(labels[s], c);
       const double share = shared::memberShare(member);

@@ -66,7 +66,7 @@ void Bounce::declare(graph::Declaration& d) {
                                          "; ask for all bounces, or raise bounce.iterations");
   const bool emits = d.traits.hasEmissionByRays();
   const bool needsMatrix = bounces > 1 || emits || d.traits.keeps(scene::Feature::Matrix);
-  for (const char* name : {"row_start", "entries", "sky"}) {
+  for (const char* name : {"row_start", "entries"}) {
     d.readIf(needsMatrix, name, "form factors between clusters", "one bounce needs no light between clusters").optional = !needsMatrix;
   }
   const bool toFaces = last_ == Last::Faces || (last_ == Last::Auto && d.traits.sky);
@@ -240,10 +240,10 @@ void Bounce::recordSweeps(graph::RecordContext& context, const BouncePush& push,
   const gpu::Buffer& source = sourceOf(context);
   const gpu::Buffer& iterate = context.buffer("iterate");
   const gpu::Buffer& steps = context.buffer("cluster_radiosity");
-  commands.bind(source_, {context.buffer("clusters"), direct, emits ? context.buffer("received") : direct, context.buffer("sky"),
+  commands.bind(source_, {context.buffer("row_start"), context.buffer("clusters"), direct, emits ? context.buffer("received") : direct,
                           emits ? source : iterate, control});
   commands.push(push);
-  commands.dispatchItems(push.clusterCount, kGroup);
+  commands.dispatchItems(push.clusterCount, kRowsPerGroup);
   commands.barrier();
   commands.bind(begin_, {source, control, iterate, steps});
   commands.push(push);

@@ -1,6 +1,6 @@
 // clustered_voxel.bounce — light that surfaces pass on among themselves.
 //
-// reads   row_start, entries, sky of transfer (not needed for one bounce without emitters by rays); clusters, members, faces; labels,
+// reads   row_start, entries of transfer (not needed for one bounce without emitters by rays); clusters, members, faces; labels,
 //         visibility_row_start, visibility_entries, chunk_table (last=faces; optional): rows of visibility
 //         face_irradiance and direct_radiosity of inject; emission where emitters light through rays (Traits::emittersByRays)
 // writes  cluster_radiosity  vec3 × C  reflected B, W/m², without emission; 0: black or unlit

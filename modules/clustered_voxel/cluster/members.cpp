@@ -17,7 +17,7 @@ void Members::declare(graph::Declaration& d) {
   d.read("voxels", "packed coordinate of each voxel");
   d.read("faces", "Face");
   d.read("labels", "cluster id of each face");
-  d.write("clusters", Shape::buffer(sizeof(shared::Cluster), Extent::of("clusters")), "Cluster");
+  d.write("clusters", Shape::buffer(sizeof(shared::Cluster), Extent::of("clusters") + 1), "Cluster, and where the members of the last end");
   d.write("places", Shape::buffer(sizeof(shared::ClusterPlace), Extent::of("clusters")), "ClusterPlace; grid space, h²").optional = true;
   d.write("members", Shape::buffer(4, Extent::of("faces")), "face ids by cluster, ascending within each");
   d.scratch("starts", Shape::buffer(4, Extent::of("clusters") + 1), "first member of each cluster");
@@ -65,7 +65,7 @@ void Members::record(graph::RecordContext& context) {
   commands.bind(describe_, {context.buffer("voxels"), context.buffer("faces"), starts, members, context.buffer("clusters"),
                             context.buffer(context.has("places") ? "places" : "clusters")});
   commands.push(clusterCount);
-  commands.dispatchItems(clusterCount, kGroup);
+  commands.dispatchItems(clusterCount + 1, kGroup);
 }
 
 }  // namespace radivox::clustered_voxel

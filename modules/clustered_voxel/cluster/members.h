@@ -1,7 +1,7 @@
 // clustered_voxel.members — what each cluster holds.
 //
 // reads   voxels, faces, labels
-// writes  clusters  Cluster × C       area-weighted mean albedo, and where the members are
+// writes  clusters  Cluster × (C + 1) area-weighted mean albedo, and where the members are
 //         places?   ClusterPlace × C  area-weighted means of position and normal, Σ a_s; made only if read
 //         members   u32 × F           face ids by cluster, ascending within each
 // runs    when the clusters change

@@ -39,7 +39,7 @@ void Transfer::declare(graph::Declaration& d) {
   d.write("row_start", Shape::buffer(4, Extent::of("clusters") + 1), "first entry of each cluster's row");
   d.write("entries", Shape::buffer(4, Extent::of("transfer_entries")), "column and form factor, shared/transfer_entry.h; columns ascend")
       .growable = true;
-  d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene");
+  d.write("sky", Shape::buffer(4, Extent::of("clusters")), "share of rays that left the scene").optional = true;
   d.publishCount("transfer_entries", "", 0);
   d.scratch("total", Shape::buffer(4, 2), "number of entries, low and high word");
   // Covers Scan::scratchBytes: two words a block of 1024 items, the same for their sums, each level at an aligned offset.
@@ -56,10 +56,12 @@ void Transfer::prepare(graph::PrepareContext& context) {
                                                                      .bindings = {kB, kB, kB, kB, kB, kB},
                                                                      .pushConstantBytes = sizeof(Push),
                                                                      .constants = {{1, lanes}}});
-    pipelines.fill = gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
-                                                                    .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
-                                                                    .pushConstantBytes = sizeof(Push),
-                                                                    .constants = {{0, context.has("weights") ? 1u : 0u}, {1, lanes}}});
+    pipelines.fill = gpu::Pipeline(
+        device,
+        gpu::ComputePipelineInfo{.shader = "clustered_voxel/visibility/transfer_fill.comp",
+                                 .bindings = {kB, kB, kB, kB, kB, kB, kB, kB, kB},
+                                 .pushConstantBytes = sizeof(Push),
+                                 .constants = {{0, context.has("weights") ? 1u : 0u}, {1, lanes}, {2, context.has("sky") ? 1u : 0u}}});
   };
   const bool isCpu = device.capabilities().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   hasFew_ = lanes_ == Lanes::Eight || (lanes_ == Lanes::Auto && isCpu);
@@ -89,8 +91,9 @@ void Transfer::record(graph::RecordContext& context) {
     scan_->scan(commands, rowStart, rowStart, clusterCount + 1, b("scan"), &b("total"));
   } else if (clusterCount > 0) {
     push.matrix = context.grown("entries").front()->address();
-    commands.bind(pipelines.fill, {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart,
-                                   b("faces"), b("sky"), b(context.has("weights") ? "weights" : "labels")});
+    commands.bind(pipelines.fill,
+                  {b("visibility_row_start"), b("chunk_table"), b("labels"), b("clusters"), b("members"), rowStart, b("faces"),
+                   b(context.has("sky") ? "sky" : "row_start"), b(context.has("weights") ? "weights" : "labels")});
     commands.push(push);
     commands.dispatchItems(clusterCount, 1);
   }

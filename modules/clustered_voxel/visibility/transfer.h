@@ -5,7 +5,7 @@
 // writes  row_start  u32 × (C + 1)  first entry of each row
 //         entries+   u32            column, F_cc' in units of 2⁻ᵇ (shared/transfer_entry.h: b bits are left beside C columns, 24 at most);
 //                                   columns ascend within a row; publishes [transfer_entries]
-//         sky        f32 × C        share of the cluster's rays that left the scene
+//         sky?       f32 × C        share of the cluster's rays that left the scene; made only if read
 // frees   the rows, where nobody else reads them (the last bounce goes to clusters, no sky, no dump): 14 bits an entry and 4 B a face; visibility runs again where
 //         this does
 // runs    when visibility or clusters change; host-paced in two steps, since the number of entries must be known to store them

@@ -20,8 +20,9 @@ layout(set = 0, binding = 6, scalar) writeonly buffer Radiosity { vec3 radiosity
 void main() {
   uint c = radivoxItemIndex();
   if (c >= push.clusterCount) return;
-  for (uint i = 0u; i < clusters[c].faceCount; ++i) {
-    uint s = memberFace(members[clusters[c].firstMember + i]);
+  uint end = clusters[c + 1u].firstMember;
+  for (uint i = clusters[c].firstMember; i < end; ++i) {
+    uint s = memberFace(members[i]);
     vec3 irradiance = faceIrradiance[s] + indirect[c];
     if (push.hasEmission != 0u) irradiance += received[c];
     radiosity[s] = decodeAlbedo(faces[s].albedo) * irradiance;

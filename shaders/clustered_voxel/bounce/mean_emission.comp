@@ -18,12 +18,12 @@ layout(set = 0, binding = 4, scalar) writeonly buffer Mean { vec3 meanEmission[]
 void main() {
   uint c = radivoxItemIndex();
   if (c >= push.clusterCount) return;
-  Cluster cluster = clusters[c];
+  uint begin = clusters[c].firstMember, end = clusters[c + 1u].firstMember;
   CompensatedSum3 sum = CompensatedSum3(vec3(0.0), vec3(0.0));
   CompensatedSum total = CompensatedSum(0.0, 0.0);
   for (uint byArea = 0u; byArea < 2u && total.high == 0.0; ++byArea) {
-    for (uint i = 0; i < cluster.faceCount; ++i) {
-      uint member = members[cluster.firstMember + i];
+    for (uint i = begin; i < end; ++i) {
+      uint member = members[i];
       uint s = memberFace(member);
       float weight = byArea == 1u ? faces[s].area : float(memberShare(member));
       addTo(sum, weight * emission[s]);

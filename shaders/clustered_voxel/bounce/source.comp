@@ -3,17 +3,13 @@
 #extension GL_EXT_scalar_block_layout : require
 // b = what clusters reflect of direct light, the emitters' part (already received) added. Its maxima, and ρ · row sum as the first bound
 // of the spectral radius of ρF.
-#include "clustered_voxel/bounce/bounce_types.h"
-#include "shared/dispatch.glsl"
-#include "shared/voxel.h"
-layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { BouncePush push; };
-layout(set = 0, binding = 0, scalar) readonly buffer Clusters { Cluster clusters[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer Direct { vec3 direct[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer Received { vec3 received[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer Sky { float sky[]; };
+#include "clustered_voxel/bounce/row_product.glsl"
+layout(set = 0, binding = 1, scalar) readonly buffer Clusters { Cluster clusters[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Direct { vec3 direct[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer Received { vec3 received[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer Source { vec3 source[]; };
 layout(set = 0, binding = 5, scalar) buffer Control { BounceControl control; };
+#define RADIVOX_VECTOR(i) vec3(1.0)
 
 shared uint sharedSource[3];
 shared uint sharedRadius[3];
@@ -22,16 +18,17 @@ void main() {
   uint lane = gl_LocalInvocationID.x;
   if (lane < 3u) sharedSource[lane] = sharedRadius[lane] = 0u;
   barrier();
-  uint c = radivoxItemIndex();
-  if (c < push.clusterCount) {
+  uint c = rowOfLane();
+  vec3 rowSum;
+  radivoxRowProduct(c, rowSum);
+  if (isFirstOfRow() && c < push.clusterCount) {
     vec3 albedo = clusters[c].albedo;
     vec3 b = direct[c];
     if (push.hasEmission != 0u) {
       b += albedo * received[c];
       source[c] = b;  // otherwise it is `direct`
     }
-    // Row sums are 1 − sky but for rounding.
-    vec3 bound = albedo * (1.0 - sky[c] + 1e-6);
+    vec3 bound = albedo * (rowSum + 1e-6);
     for (uint k = 0; k < 3u; ++k) {
       atomicMax(sharedSource[k], floatBitsToUint(max(b[k], 0.0)));
       atomicMax(sharedRadius[k], floatBitsToUint(bound[k]));

@@ -54,7 +54,11 @@ void sortMembers(uint begin, uint end) {
 
 void main() {
   uint c = radivoxItemIndex();
-  if (c >= clusterCount) return;
+  if (c > clusterCount) return;
+  if (c == clusterCount) {
+    clusters[c] = Cluster(vec3(0.0), starts[c]);
+    return;
+  }
   uint begin = starts[c];
   uint end = starts[c + 1u];
   sortMembers(begin, end);
@@ -72,7 +76,6 @@ void main() {
   float whole = area.high + area.low;
   Cluster cluster;
   cluster.albedo = (albedo.high + albedo.low) / whole;
-  cluster.faceCount = end - begin;
   cluster.firstMember = begin;
   clusters[c] = cluster;
   if (!kPlaces) return;

@@ -15,7 +15,7 @@ layout(set = 0, binding = 2, scalar) readonly buffer Weights { uint weights[]; }
 void main() {
   uint c = radivoxItemIndex();
   if (c >= clusterCount) return;
-  uint begin = clusters[c].firstMember, end = begin + clusters[c].faceCount;
+  uint begin = clusters[c].firstMember, end = clusters[c + 1u].firstMember;
   uint greatest = 0u;
   for (uint i = begin; i < end; ++i) greatest = max(greatest, weights[members[i]]);
   if (greatest == 0u) return;

@@ -19,11 +19,12 @@ layout(push_constant, scalar) uniform Push { uint clusterCount; };
 void main() {
   uint c = radivoxItemIndex();
   if (c >= clusterCount) return;
+  uint begin = clusters[c].firstMember, end = clusters[c + 1u].firstMember;
   vec3 sum = vec3(0.0);
   float total = 0.0;
   for (uint byArea = 0u; byArea < 2u && total == 0.0; ++byArea) {
-    for (uint i = 0; i < clusters[c].faceCount; ++i) {
-      uint member = members[clusters[c].firstMember + i];
+    for (uint i = begin; i < end; ++i) {
+      uint member = members[i];
       uint s = memberFace(member);
       float weight = byArea == 1u ? faces[s].area : float(memberShare(member));
       sum += weight * decodeAlbedo(faces[s].albedo) * irradiance[s];

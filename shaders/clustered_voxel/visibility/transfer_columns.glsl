@@ -20,6 +20,8 @@ layout(set = 0, binding = 1, scalar) readonly buffer ChunkTable { uvec2 chunkTab
 layout(set = 0, binding = 2) uniform usamplerBuffer labels;
 layout(set = 0, binding = 3, scalar) readonly buffer Clusters { Cluster clusters[]; };
 layout(set = 0, binding = 4) uniform usamplerBuffer members;
+// Where the members of a cluster begin and end.
+uvec2 membersOf(uint c) { return uvec2(clusters[c].firstMember, clusters[c + 1u].firstMember); }
 uint memberAt(uint i) { return memberFace(texelFetch(members, int(i)).x); }
 
 layout(constant_id = 1) const uint kLanes = 64u;  // 64 or a part of it
@@ -73,10 +75,10 @@ uint countOwnColumns() {
 }
 
 // All lanes; ends with a barrier. The set is empty before.
-void findColumns(Cluster cluster, uint window) {
+void findColumns(uvec2 range, uint window) {
   uint lane = gl_LocalInvocationID.x;
-  for (uint i = lane; i < cluster.faceCount; i += kLanes) {
-    uint s = memberAt(cluster.firstMember + i);
+  for (uint i = range.x + lane; i < range.y; i += kLanes) {
+    uint s = memberAt(i);
     VisibilityRow row = rowOf(s);
     while (hasEntry(row)) {
       uint column = columnOf(nextEntry(row, push.clusterCount + push.faceCount)) - window;  // wraps for columns before the window

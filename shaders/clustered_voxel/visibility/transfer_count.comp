@@ -13,9 +13,9 @@ void main() {
   uint lane = gl_LocalInvocationID.x;
   clearColumns();
   if (lane == 0u) columnCount = 0u;
-  Cluster cluster = clusters[c];
+  uvec2 range = membersOf(c);
   for (uint window = 0u; window < push.clusterCount; window += kWindow) {
-    findColumns(cluster, window);
+    findColumns(range, window);
     uint found = countOwnColumns();
     if (found > 0u) atomicAdd(columnCount, found);
     forgetColumns();

@@ -12,6 +12,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer Starts { uint starts[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer FaceAreas { Face faces[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer Sky { float sky[]; };
 layout(set = 0, binding = 8, scalar) readonly buffer Weights { uint weights[]; };
+layout(constant_id = 2) const bool kSky = false;       // somebody reads it
 layout(constant_id = 0) const bool kWeighted = false;  // weights are there
 
 // What a face counts for in its cluster's row: how much of it others see; its area where that is not given, or nobody sees any face of the cluster.
@@ -64,13 +65,12 @@ uint unitsOf(uvec2 part, uvec2 whole) {
 }
 
 // The cluster's largest weight; all lanes.
-float greatestOf(Cluster cluster, bool byArea) {
+float greatestOf(uvec2 range, bool byArea) {
   uint lane = gl_LocalInvocationID.x;
   if (lane == 0u) greatestWeight = 0u;
   barrier();
   uint greatest = 0u;
-  for (uint i = lane; i < cluster.faceCount; i += kLanes)
-    greatest = max(greatest, floatBitsToUint(weightOf(memberAt(cluster.firstMember + i), byArea)));
+  for (uint i = range.x + lane; i < range.y; i += kLanes) greatest = max(greatest, floatBitsToUint(weightOf(memberAt(i), byArea)));
   if (greatest > 0u) atomicMax(greatestWeight, greatest);  // weights are positive: their bits are ordered as they are
   barrier();
   return uintBitsToFloat(greatestWeight);
@@ -79,15 +79,15 @@ float greatestOf(Cluster cluster, bool byArea) {
 // The row of one cluster; all lanes.
 void fillRow(uint c) {
   uint lane = gl_LocalInvocationID.x;
-  Cluster cluster = clusters[c];
+  uvec2 range = membersOf(c);
   if (lane == 0u) totalLow = totalHigh = skyLow = skyHigh = 0u;
   barrier();
   bool byArea = !kWeighted;
-  float greatest = greatestOf(cluster, byArea);
+  float greatest = greatestOf(range, byArea);
   if (greatest == 0.0) {
     byArea = true;
     barrier();
-    greatest = greatestOf(cluster, byArea);
+    greatest = greatestOf(range, byArea);
   }
 
   uvec2 total = uvec2(0u);
@@ -95,7 +95,7 @@ void fillRow(uint c) {
   uvec2 passed = uvec2(0u);  // of the row's sum, by columns that are done
   uint row = starts[c];
   for (uint window = 0u; window < push.clusterCount; window += kWindow) {
-    findColumns(cluster, window);
+    findColumns(range, window);
     // Columns before each word that has any: each lane's are added up, then those of the lanes before.
     laneSums[lane] = countOwnColumns();
     barrier();
@@ -119,8 +119,8 @@ void fillRow(uint c) {
       uint count = min(kBatch, windowColumns - firstRank);
       for (uint i = lane; i < count; i += kLanes) sumLow[i] = sumHigh[i] = 0u;
       barrier();
-      for (uint i = lane; i < cluster.faceCount; i += kLanes) {
-        uint s = memberAt(cluster.firstMember + i);
+      for (uint i = range.x + lane; i < range.y; i += kLanes) {
+        uint s = memberAt(i);
         uint unit = weightUnits(weightOf(s, byArea), greatest);
         VisibilityRow seen = rowOf(s);
         while (hasEntry(seen)) {
@@ -187,7 +187,7 @@ void fillRow(uint c) {
     forgetColumns();
   }
   // What is lost on backs lies between the columns and the misses.
-  if (lane == 0u) {
+  if (kSky && lane == 0u) {
     uvec2 whole = uvec2(totalLow, totalHigh);
     uint kept = unitsOf(fixedAdd(whole, fixedNegate(uvec2(skyLow, skyHigh))), whole);
     sky[c] = 1.0 - float(kept) * transferUnit(push.weightBits);
