@@ -57,8 +57,16 @@ std::vector<std::string> connectSink(graph::Graph& graph, const std::string& sin
 
 void leaveOutRays(graph::Graph& graph, const std::vector<GridName>& grids) {
   if ((needsOf(grids) & (NeedRows | NeedIndirect | NeedError)) != 0) return;
+  // What inject takes from visibility it has elsewhere: masks, and clusters whose means go by area, which no grid shows.
   const graph::Graph::Entry* inject = findType(graph, "clustered_voxel.inject");
-  if (inject != nullptr) graph.disconnect(inject->name + ".weights");
+  const graph::Graph::Entry* faces = findType(graph, "clustered_voxel.faces");
+  const graph::Graph::Entry* members = findType(graph, "clustered_voxel.members");
+  if (inject == nullptr || faces == nullptr || members == nullptr) return;
+  for (const auto& [from, to] :
+       {std::pair(std::string(), "planes"), std::pair(faces->name + ".mask", "mask"), std::pair(members->name + ".members", "members")}) {
+    graph.disconnect(inject->name + "." + to);
+    if (!from.empty()) graph.connect(from, inject->name + "." + to);
+  }
 }
 
 }  // namespace radivox::vdb

@@ -6,7 +6,7 @@
 //   RADIVOX_BIND_VOXELS      packedVoxel(voxel)   u32 × V       voxelCoordinate(voxel)
 //   RADIVOX_BIND_DISTANCE    brickDistance(brick) u8 × B
 //   RADIVOX_BIND_FACE_MASK   faceMask(voxel)      u32 × V       hasFace(voxel, f)
-//   RADIVOX_BIND_PLANE_MASK  the same from what visibility's `planes` hold beside (shared/voxel_plane.h), where masks have been freed
+//   RADIVOX_BIND_MASK_WORDS  the same at word kMaskStride · voxel, from bit kMaskShift on: `planes` hold masks, too (shared/voxel_plane.h)
 //   RADIVOX_BIND_FIRST_FACE  firstFace(voxel)     u32 × (V + 1) faceIndex(voxel, f)             (needs FACE_MASK)
 //   RADIVOX_BIND_FACES       faceAt(s)            Face × F
 // All are read only, as texels: what lanes look up at scattered places CPU devices fetch for all lanes at once from these, and lane by lane, with a
@@ -59,9 +59,9 @@ uint faceMask(uint voxel) { return texelFetch(faceMaskTexels, int(voxel)).x; }
 bool hasFace(uint voxel, uint f) { return ((faceMask(voxel) >> f) & 1u) != 0u; }
 #endif
 
-#ifdef RADIVOX_BIND_PLANE_MASK
-layout(set = 0, binding = RADIVOX_BIND_PLANE_MASK) uniform usamplerBuffer maskedPlaneTexels;
-uint faceMask(uint voxel) { return texelFetch(maskedPlaneTexels, int(2u * voxel)).x >> 26; }
+#ifdef RADIVOX_BIND_MASK_WORDS
+layout(set = 0, binding = RADIVOX_BIND_MASK_WORDS) uniform usamplerBuffer maskTexels;
+uint faceMask(uint voxel) { return texelFetch(maskTexels, int(kMaskStride * voxel)).x >> kMaskShift; }
 bool hasFace(uint voxel, uint f) { return ((faceMask(voxel) >> f) & 1u) != 0u; }
 #endif
 

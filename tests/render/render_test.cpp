@@ -189,7 +189,7 @@ TEST_F(Render, SlowSameBitsTwice) {
     options.outputs = {"composite.color",    "surface.faces",     "cluster.labels",         "visibility.row_start",
                        "transfer.row_start", "transfer.sky",      "inject.face_irradiance", "bounce.face_radiosity",
                        "gather.irradiance",  "filter.irradiance", "voxelize.occupancy",     "index.voxels",
-                       "members.members"};
+                       "shares.members"};
     Pipeline a(oracles::sharedDevice(), scene::makeBuiltin(name), options);
     Pipeline b(oracles::sharedDevice(), scene::makeBuiltin(name), options);
     a.run();

@@ -33,7 +33,9 @@ void Inject::declare(graph::Declaration& d) {
   d.read("rank", "occupied voxels before the brick");
   d.read("voxels", "packed coordinate of each voxel");
   const char* noSplat = lit_ ? "no texels are splatted" : "nothing lights the scene";
-  d.readIf(lit_ && method_ == Method::Splat, "planes", "which faces each voxel has: shared/voxel_plane.h", noSplat);
+  const bool splats = lit_ && method_ == Method::Splat;
+  d.readIf(splats, "planes", "which faces each voxel has: shared/voxel_plane.h", noSplat).optional = true;
+  d.readIf(splats, "mask", "faces of each voxel, where there are no planes", noSplat).optional = true;
   d.read("first", "first face of each voxel");
   d.read("faces", "Face");
   d.read("clusters", "Cluster");
@@ -64,11 +66,17 @@ void Inject::prepare(graph::PrepareContext& context) {
                                                              .constants = {{0, lit_ ? 1u : 0u}}});
   }
   if (lit_ && method_ == Method::Splat) {
+    if (!context.has("planes") && !context.has("mask"))
+      throw Error(ErrorCode::BadInput,
+                  "clustered_voxel.inject: neither planes nor mask is connected; connect visibility.planes or faces.mask");
     splat_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/inject/splat.comp",
                                          .bindings = {kB, kB, kB, kB, kB, kI, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB, kB},
                                          .pushConstantBytes = 12,
-                                         .constants = {{0, context.traits().soleLight()}, {1, context.has("triangle_ids") ? 1u : 0u}}});
+                                         .constants = {{0, context.traits().soleLight()},
+                                                       {1, context.has("triangle_ids") ? 1u : 0u},
+                                                       {2, context.has("planes") ? 2u : 1u},
+                                                       {3, context.has("planes") ? 26u : 0u}}});
     resolve_ = gpu::Pipeline(
         device, gpu::ComputePipelineInfo{
                     .shader = "clustered_voxel/inject/resolve.comp", .bindings = {kB, kB, kB, kB, kB, kB, kB}, .pushConstantBytes = 8});
@@ -119,7 +127,7 @@ void Inject::record(graph::RecordContext& context) {
                            context.buffer("grid"),
                            context.buffer("occupancy"),
                            context.buffer("rank"),
-                           *context.grown("planes").front(),
+                           context.has("planes") ? *context.grown("planes").front() : context.buffer("mask"),
                            context.buffer("first"),
                            irradiance,
                            viewTable,

@@ -1,8 +1,9 @@
 // clustered_voxel.inject — direct light arrives at voxel faces.
 //
 // reads   scene.lights, scene.shadow_views, scene.info, scene.vertices, scene.indices; shadow.depth, shadow.triangle (absent when no light
-//         casts from a point: then only the sky lights faces); grid, occupancy, rank, mask, first, faces; labels, clusters, members;
-//         triangles first?, ids? (which faces a piece is no part of); members with shares; sky_irradiance? = sky.irradiance (where the scene has a sky)
+//         casts from a point: then only the sky lights faces); grid, occupancy, rank, voxels, first, faces; planes of visibility, or
+//         else mask (splat: which faces a voxel has); clusters, members with shares; triangles first?, ids? (which faces a piece is no part of);
+//         sky_irradiance? = sky.irradiance (where the scene has a sky)
 // writes  face_irradiance   vec3 × F   E_dir, W/m², with the sky's light; 0: unlit
 //         cluster_radiosity vec3 × C   Σ w ρ E_dir / Σ w, W/m²: the light that clusters send back at once
 //         status            u32 × 4    texels that found no face (their flux is lost), low and high word of all lit texels, 0

@@ -10,7 +10,9 @@
 #define RADIVOX_BIND_GRID 6
 #define RADIVOX_BIND_OCCUPANCY 7
 #define RADIVOX_BIND_RANK 8
-#define RADIVOX_BIND_PLANE_MASK 9
+layout(constant_id = 2) const uint kMaskStride = 2u;  // planes; 1: masks themselves
+layout(constant_id = 3) const uint kMaskShift = 26u;  // 0
+#define RADIVOX_BIND_MASK_WORDS 9
 #define RADIVOX_BIND_FIRST_FACE 10
 #include "shared/face_shares.h"
 #include "shared/voxel_lookup.glsl"
