@@ -112,12 +112,13 @@ void Buffer::release() noexcept {
 }
 
 VkBufferView Buffer::texels(TexelType type) const {
-  const bool words = type == TexelType::Uint;
-  VkBufferView& view = texels_.at(words ? 1 : 0);
+  constexpr VkFormat kFormats[] = {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_UINT, VK_FORMAT_R32G32B32A32_SINT};
+  const VkFormat format = kFormats[static_cast<size_t>(type)];
+  VkBufferView& view = texels_.at(static_cast<size_t>(type));
   if (view != VK_NULL_HANDLE) return view;
   if (device_ == nullptr) throw Error(ErrorCode::Unsupported, "buffer " + name_ + ": a host's buffer cannot be read as texels");
   const Capabilities& can = device_->capabilities();
-  const VkDeviceSize size = words ? 4 : 16, count = ((bytes_ + 3) / 4 * 4) / size;
+  const VkDeviceSize size = texelBytes(format), count = ((bytes_ + 3) / 4 * 4) / size;
   if (count > can.maxTexelBufferElements) {
     throw Error(ErrorCode::OutOfMemory, "buffer " + name_ + ": " + std::to_string(count) + " texels, but " + can.deviceName +
                                             " reads at most " + std::to_string(can.maxTexelBufferElements) +
@@ -125,7 +126,7 @@ VkBufferView Buffer::texels(TexelType type) const {
   }
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
   info.buffer = buffer_;
-  info.format = words ? VK_FORMAT_R32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  info.format = format;
   info.range = count * size;
   check(vkCreateBufferView(device_->handle(), &info, nullptr, &view), "vkCreateBufferView");
   return view;

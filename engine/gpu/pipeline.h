@@ -13,7 +13,7 @@
 namespace radivox::gpu {
 
 enum class BindingType : uint8_t {
-  StorageBuffer,  ///< TexelBuffer where the shader declares a `samplerBuffer` or a `usamplerBuffer`
+  StorageBuffer,  ///< TexelBuffer where the shader declares a `samplerBuffer`, a `usamplerBuffer` or an `isamplerBuffer`
   UniformBuffer,
   StorageImage,  ///< layout GENERAL
   SampledImage,  ///< combined image sampler, nearest, clamp to edge; layout GENERAL (colour) or DEPTH_READ_ONLY_OPTIMAL

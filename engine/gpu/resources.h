@@ -46,7 +46,8 @@ class Buffer {
   void* mapped() const { return mapped_; }
   const std::string& name() const { return name_; }
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
-  /// The whole as texels, for a BindingType::TexelBuffer: Uint as words (R32_UINT), Float as vec4 (RGBA32F). Made at the first call. Throws OutOfMemory
+  /// The whole as texels, for a BindingType::TexelBuffer: Uint as words (R32_UINT), Int as four words (RGBA32_SINT), Float as vec4 (RGBA32F); what is
+  /// left over at the end is not in it. Made at the first call. Throws OutOfMemory
   /// where the device's texel buffers are shorter, Unsupported for a host's buffer.
   VkBufferView texels(TexelType type) const;
 
@@ -56,7 +57,7 @@ class Buffer {
   void release() noexcept;
   Device* device_ = nullptr;
   VkBuffer buffer_ = VK_NULL_HANDLE;
-  mutable std::array<VkBufferView, 2> texels_{};  ///< Float, Uint
+  mutable std::array<VkBufferView, 3> texels_{};  ///< by TexelType
   VkDeviceMemory ownedMemory_ = VK_NULL_HANDLE;
   VkDeviceSize bytes_ = 0;
   VkDeviceAddress address_ = 0;

@@ -46,7 +46,7 @@ layout(constant_id = 9) const bool kSides = false;            // back faces of s
 #define RADIVOX_SKIP kSkip
 layout(set = 0, binding = 21) uniform usamplerBuffer triangleFirstTexels;
 layout(set = 0, binding = 22) uniform usamplerBuffer triangleIdTexels;
-layout(set = 0, binding = 23) uniform usamplerBuffer triangleCorners;
+layout(set = 0, binding = 23) uniform isamplerBuffer triangleCorners;
 layout(set = 0, binding = 24, scalar) readonly buffer Textures { Texture textures[]; };
 
 #include "frame/polygon.glsl"

@@ -10,13 +10,15 @@ float triangleDot(vec3 a, vec3 b) {
   return all_;
 }
 
-vec3 triangleNormal(uint id) {
-  vec3 a = vertices[indices[3u * id]].position;
-  vec3 e1 = vertices[indices[3u * id + 1u]].position - a;
-  vec3 e2 = vertices[indices[3u * id + 2u]].position - a;
+vec3 normalOfEdges(vec3 e1, vec3 e2) {
   precise vec3 across = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
   precise vec3 unit = across * preciseInverseSqrt(max(triangleDot(across, across), 1e-30));
   return unit;
+}
+
+vec3 triangleNormal(uint id) {
+  vec3 a = vertices[indices[3u * id]].position;
+  return normalOfEdges(vertices[indices[3u * id + 1u]].position - a, vertices[indices[3u * id + 2u]].position - a);
 }
 
 #endif

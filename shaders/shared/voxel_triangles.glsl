@@ -1,6 +1,6 @@
 // Rays against the triangles in a voxel: exact, where planes of the mean surface are too coarse. Over shared/voxel_march.glsl. The includer
 // declares grid, vertices[], indices[], triangleMaterials[], materials[], textures[] (for alpha masks), `uniform usamplerBuffer` triangleFirstTexels and
-// triangleIdTexels (clustered_voxel.triangles), kMasked, `uniform usamplerBuffer triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
+// triangleIdTexels (clustered_voxel.triangles), kMasked, `uniform isamplerBuffer triangleCorners` (shared/triangle_corners.h), kCorners: it is there, and the extensions of
 // shared/texture.glsl.
 #ifndef RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
 #define RADIVOX_SHADERS_SHARED_VOXEL_TRIANGLES_GLSL
@@ -32,22 +32,39 @@ bool isCovered(uint id, vec2 multiples, float size) {
   return alpha >= material.alphaCutoff;
 }
 
-// In grid space, rounded alike wherever it comes from; k: 0, 1 or 2.
-vec3 cornerOf(uint id, uint k) {
+// Corners in grid space, rounded alike wherever they come from. Three fill one and a half texels of four words.
+void loadCorners(uint id, out vec3 a, out vec3 b, out vec3 c) {
   float step_ = cornerStep(castSize);
   if (kCorners) {
-    int at = int(6u * id + 2u * k);
-    return decodeCorner(uvec2(texelFetch(triangleCorners, at).x, texelFetch(triangleCorners, at + 1).x), step_);
+    int at = int(3u * id) >> 1;
+    bool odd = (id & 1u) != 0u;
+    uvec4 first = uvec4(texelFetch(triangleCorners, at)), second = uvec4(texelFetch(triangleCorners, at + 1));
+    a = decodeCorner(odd ? first.zw : first.xy, step_);
+    b = decodeCorner(odd ? second.xy : first.zw, step_);
+    c = decodeCorner(odd ? second.zw : second.xy, step_);
+  } else {
+    float steps = cornerSteps(castSize);
+    a = decodeCorner(encodeCorner(toGridSpace(grid, vertices[indices[3u * id]].position), steps), step_);
+    b = decodeCorner(encodeCorner(toGridSpace(grid, vertices[indices[3u * id + 1u]].position), steps), step_);
+    c = decodeCorner(encodeCorner(toGridSpace(grid, vertices[indices[3u * id + 2u]].position), steps), step_);
   }
-  return decodeCorner(encodeCorner(toGridSpace(grid, vertices[indices[3u * id + k]].position), cornerSteps(castSize)), step_);
+}
+
+// triangleNormal() of the rounded corners: many lanes load these at once.
+vec3 cornerNormal(uint id) {
+  vec3 a, b, c;
+  loadCorners(id, a, b, c);
+  return normalOfEdges(b - a, c - a);
 }
 
 // Does the ray meet the triangle at least < t < most (voxels)? `most` and `time` are fractions: a numerator, and a denominator above 0, so that no
 // triangle costs a division. Only what is the same on every device: no fused operations.
 bool meetsTriangle(TraversalRay ray, uint id, float least, vec2 most, out vec2 time) {
-  vec3 a = cornerOf(id, 0u) - ray.origin;
-  vec3 e1 = cornerOf(id, 1u) - ray.origin - a;
-  vec3 e2 = cornerOf(id, 2u) - ray.origin - a;
+  vec3 p0, p1, p2;
+  loadCorners(id, p0, p1, p2);
+  vec3 a = p0 - ray.origin;
+  vec3 e1 = p1 - ray.origin - a;
+  vec3 e2 = p2 - ray.origin - a;
   precise vec3 q = vec3(ray.direction.y * e2.z - ray.direction.z * e2.y, ray.direction.z * e2.x - ray.direction.x * e2.z,
                         ray.direction.x * e2.y - ray.direction.y * e2.x);
   precise float determinant = triangleDot(e1, q);

@@ -101,7 +101,7 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   result.time = cursor.time;
   if (met) {
     result.triangle = listedTriangle(listed);
-    vec3 normal = triangleNormal(result.triangle);
+    vec3 normal = cornerNormal(result.triangle);
     result.normal = triangleDot(normal, way.direction) > 0.0 ? -normal : normal;
     precise float at = time.x * preciseReciprocal(time.y);
     result.time = at;

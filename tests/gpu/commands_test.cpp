@@ -269,6 +269,7 @@ TEST_F(PipelineTest, TexelsOfBuffersEndAtTheDevicesLimit) {
   const gpu::Buffer buffer(device(), "a buffer", 100);
   EXPECT_EQ(buffer.texels(gpu::TexelType::Uint), buffer.texels(gpu::TexelType::Uint)) << "one view";
   EXPECT_NE(buffer.texels(gpu::TexelType::Uint), buffer.texels(gpu::TexelType::Float));
+  EXPECT_NE(buffer.texels(gpu::TexelType::Int), buffer.texels(gpu::TexelType::Uint));
   const uint64_t most = device().capabilities().maxTexelBufferElements;
   ASSERT_GT(most, 0u);
   if (4 * (most + 1) <= uint64_t{1} << 30) {

@@ -17,7 +17,7 @@ const char* piecesPort(const graph::RecordContext& context) { return context.has
 graph::Port& readCorners(graph::Declaration& d, bool wanted, const std::string& unwanted) {
   const auto within = [](uint64_t amount, uint64_t limit) { return limit == 0 || amount <= limit; };  // 0: no device is known
   const uint64_t bytes = uint64_t{d.traits.triangleCount} * shared::kCornerBytes;
-  const bool fits = within(bytes, d.capabilities.maxStorageBufferRange) && within(bytes / 4, d.capabilities.maxTexelBufferElements);
+  const bool fits = within(bytes, d.capabilities.maxStorageBufferRange) && within(bytes / 16, d.capabilities.maxTexelBufferElements);
   return d.readIf(wanted && fits, "corners", "corners of triangles", unwanted + ", or there are too many triangles for one buffer");
 }
 
@@ -52,7 +52,8 @@ void Triangles::declare(graph::Declaration& d) {
                                 "middle of each triangle in its voxel (unorm 10:10:10), its area there (float bits, h²)");
   pieces.growable = pieces.optional = true;
   if (apart_) d.write("own_pieces", {}, "the same where nobody reads them; freed at once").growable = true;
-  d.write("corners", Shape::buffer(shared::kCornerBytes, Extent::of("triangles")),
+  // One more: the last of an odd number ends in the middle of a texel.
+  d.write("corners", Shape::buffer(shared::kCornerBytes, Extent::of("triangles") + 1),
           "corners of each triangle (grid space): shared/triangle_corners.h")
       .optional = true;
   d.publishCount("triangle_entries", "", 0);

@@ -41,7 +41,7 @@ layout(set = 0, binding = 25) uniform sampler2DArray shadowDepth;
 layout(set = 0, binding = 26) uniform usampler2DArray shadowTriangle;
 layout(set = 0, binding = 27, scalar) readonly buffer FaceIrradiance { vec3 faceIrradiance[]; };
 layout(constant_id = 4) const bool kCorners = false;  // triangleCorners is there
-layout(set = 0, binding = 28) uniform usamplerBuffer triangleCorners;
+layout(set = 0, binding = 28) uniform isamplerBuffer triangleCorners;
 layout(constant_id = 5) const bool kSky = false;  // faceIrradiance holds the sky's light, which no shadow map tells
 layout(set = 0, binding = 29, scalar) readonly buffer SkyIrradiance { vec3 skyIrradiance[]; };
 layout(constant_id = 6) const bool kSkyImage = false;

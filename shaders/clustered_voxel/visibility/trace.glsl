@@ -47,7 +47,7 @@ layout(set = 0, binding = 18, scalar) readonly buffer Materials { Material mater
 layout(set = 0, binding = 19, scalar) readonly buffer Textures { Texture textures[]; };
 layout(set = 0, binding = 20) uniform usamplerBuffer pieceTexels;  // two words each: middle, area (clustered_voxel.triangles)
 layout(constant_id = 6) const bool kCorners = false;  // triangleCorners is there
-layout(set = 0, binding = 21) uniform usamplerBuffer triangleCorners;
+layout(set = 0, binding = 21) uniform isamplerBuffer triangleCorners;
 #include "shared/voxel_walk.glsl"
 
 const float kPieceLift = 2e-3;  // voxels: pieces' middles are good to 1e-3
@@ -56,7 +56,7 @@ const float kPieceLift = 2e-3;  // voxels: pieces' middles are good to 1e-3
 // that side's normal.
 float pieceWeight(uint entry, uint f, bool backs, out vec3 n) {
   uint listed = triangleIds(entry);
-  vec3 front = triangleNormal(listedTriangle(listed));
+  vec3 front = cornerNormal(listedTriangle(listed));
   vec3 unit = backs ? -front : front;
   n = unit;
   bool looks = ((f & 1u) != 0u ? -unit[f >> 1] : unit[f >> 1]) > 0.0;
