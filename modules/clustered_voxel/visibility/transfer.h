@@ -6,8 +6,8 @@
 //         entries+   u32            column, F_cc' in units of 2⁻ᵇ (shared/transfer_entry.h: b bits are left beside C columns, 24 at most);
 //                                   columns ascend within a row; publishes [transfer_entries]
 //         sky?       f32 × C        share of the cluster's rays that left the scene; made only if read
-// frees   the rows, where nobody else reads them (the last bounce goes to clusters, no sky, no dump): 14 bits an entry and 4 B a face; visibility runs again where
-//         this does
+// frees   the rows, where nobody reads them later (the last bounce goes to clusters, no sky, no dump): 14 bits an entry and 4 B a face; labels and
+//         weights likewise; their makers run again where this does
 // runs    when visibility or clusters change; host-paced in two steps, since the number of entries must be known to store them
 // cost    four passes over the visibility entries; 4 B an entry
 // source  METHODS section 1, Bounce: F_cc' = Σ_{s∈c} w_s m_s,c' / (M Σ w_s), w_s = a_s where no weights are given. Near hits count for their face's cluster.

@@ -3,6 +3,7 @@
 // reads   grid; occupancy, distance (per brick); rank; voxels, mask, first (per voxel); faces; labels (cluster of each face)
 //         triangle_first, triangle_ids, corners? of triangles and scene geometry (triangles > 0)
 // takes   pieces?+ of triangles, which nobody else needs: freed at the end, and made again where this runs again
+// frees   mask, where nobody reads it later: planes hold it
 // writes  row_start u32 × chunks·(kRowsPerChunk + 1)  first bit of each row within its chunk
 //         entries+ bits                               rows, a buffer a chunk: shared/visibility_row.h; the counts of a row sum to M
 //         chunk_table uvec2 × chunks                  device address of each chunk
