@@ -22,7 +22,7 @@ struct AccessState {
   uint32_t readUse = 0;  ///< of the reads that the last write was made visible to
 };
 constexpr uint32_t kNoLink = 0xfffffffeu;  ///< + 1 is no link either
-constexpr uint32_t kAllUses = UseCompute | UseRaster | UseAttachment | UseTransfer | UseIndirect | UseHost;
+constexpr uint32_t kAllUses = UseCompute | UseRaster | UseAttachment | UseTransfer | UseIndirect | UseHost | UseAddress;
 
 struct ResourceState {
   gpu::Buffer buffer;

@@ -13,7 +13,7 @@ bool isDepth(VkFormat format) {
 
 VkPipelineStageFlags2 stagesOf(uint32_t use) {
   VkPipelineStageFlags2 stages = 0;
-  if ((use & UseCompute) != 0) stages |= VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  if ((use & (UseCompute | UseAddress)) != 0) stages |= VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   if ((use & UseRaster) != 0) stages |= VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   if ((use & UseAttachment) != 0) {
     stages |= VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
@@ -27,7 +27,7 @@ VkPipelineStageFlags2 stagesOf(uint32_t use) {
 
 VkAccessFlags2 readsOf(uint32_t use) {
   VkAccessFlags2 access = 0;
-  if ((use & (UseCompute | UseRaster)) != 0) {
+  if ((use & (UseCompute | UseRaster | UseAddress)) != 0) {
     access |= VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
   }
   if ((use & UseAttachment) != 0) access |= VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
@@ -39,7 +39,7 @@ VkAccessFlags2 readsOf(uint32_t use) {
 
 VkAccessFlags2 writesOf(uint32_t use) {
   VkAccessFlags2 access = 0;
-  if ((use & (UseCompute | UseRaster)) != 0) access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  if ((use & (UseCompute | UseRaster | UseAddress)) != 0) access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
   if ((use & UseAttachment) != 0) access |= VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
   if ((use & UseTransfer) != 0) access |= VK_ACCESS_2_TRANSFER_WRITE_BIT;
   if ((use & UseHost) != 0) access |= VK_ACCESS_2_HOST_WRITE_BIT;

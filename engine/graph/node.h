@@ -44,6 +44,7 @@ enum Use : uint32_t {
   UseTransfer = 8,
   UseIndirect = 16,
   UseHost = 32,
+  UseAddress = 64,  ///< compute shaders, by the buffer's address: it may be larger than what a binding shows
 };
 
 struct Port {

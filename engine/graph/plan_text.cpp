@@ -53,9 +53,9 @@ uint32_t texelBytes(VkFormat format) {
 }
 
 std::string printUse(uint32_t use) {
-  static constexpr std::pair<uint32_t, const char*> kNames[] = {{UseCompute, "compute"},   {UseRaster, "raster"},
-                                                                {UseAttachment, "attach"}, {UseTransfer, "transfer"},
-                                                                {UseIndirect, "indirect"}, {UseHost, "host"}};
+  static constexpr std::pair<uint32_t, const char*> kNames[] = {
+      {UseCompute, "compute"},   {UseRaster, "raster"}, {UseAttachment, "attach"}, {UseTransfer, "transfer"},
+      {UseIndirect, "indirect"}, {UseHost, "host"},     {UseAddress, "address"}};
   std::string text;
   for (const auto& [bit, name] : kNames) {
     if ((use & bit) != 0) text += (text.empty() ? "" : "|") + std::string(name);

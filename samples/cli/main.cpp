@@ -299,7 +299,7 @@ int run(int argc, char** argv) {
   addMeasuredOptions(needs, options);
   std::string shares = "1,10,50";
   CLI::App* moves =
-      app.add_subcommand("moves", "what a picture costs after part of the scene has moved, beside one from scratch, as a table");
+      app.add_subcommand("moves", "what a picture costs after lights, camera or part of the scene have moved, beside one from scratch, as a table");
   addSceneOptions(moves, options);
   moves->add_option("--shares", shares, "triangles that move, percent (default: 1,10,50)")->type_name("N,N");
   addMeasuredOptions(moves, options);

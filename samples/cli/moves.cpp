@@ -1,4 +1,5 @@
-// radivox moves: what a picture costs after part of the scene has moved, beside one from scratch, and whether both have the same bits.
+// radivox moves: what a picture costs after the camera, a light, or part of the scene has moved, beside one from scratch, and whether both have the
+// same bits.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -9,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/graph/executor.h"
+#include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
 #include "samples/cli/cache.h"
 #include "samples/cli/interrupt.h"
 #include "samples/cli/job.h"
@@ -85,6 +87,18 @@ scene::Scene moveShare(const scene::Scene& scene, const std::vector<Piece>& piec
   return result;
 }
 
+/// Every directional light turned by 5 degrees about the vertical, every other one `by` along `axis`.
+scene::Scene moveLights(scene::Scene scene, int axis, float by) {
+  for (scene::PunctualLight& light : scene.lights) {
+    if (light.type == shared::kLightDirectional) {
+      light.direction = glm::angleAxis(glm::radians(5.f), glm::vec3(0, 1, 0)) * light.direction;
+    } else {
+      light.position[axis] += by;
+    }
+  }
+  return scene;
+}
+
 struct Timing {
   double seconds = 0;
   std::map<std::string, double> nodes;
@@ -96,14 +110,16 @@ class Renderer {
  public:
   Renderer(gpu::Device& device, Job& job, const scene::Scene& scene, const scene::CameraDescription& camera)
       : device_(device), job_(job), gpuScene_(device, scene, job.lights) {
-    gpuScene_.setCamera(camera, job.request.width, job.request.height);
+    setCamera(camera);
     const scene::Traits traits = scene::traitsFor(scene, job.lights);
     graph::Plan plan = graph::compile(job.graph, {traits, job.request, device.capabilities(), gpuScene_.imports(), gpuScene_.counts()});
     executor_.emplace(device, job.graph, std::move(plan), traits, job.request, gpuScene_.counts());
   }
-  Timing render(const scene::Scene& scene) {
+  void setCamera(const scene::CameraDescription& camera) { gpuScene_.setCamera(camera, job_.request.width, job_.request.height); }
+  void setLights(const scene::Scene& scene) { gpuScene_.setLights(scene); }
+  void setGeometry(const scene::Scene& scene) { gpuScene_.setGeometry(scene); }
+  Timing render() {
     stopIfInterrupted();
-    gpuScene_.setGeometry(scene);
     gpuScene_.importInto(*executor_);
     executor_->run({}, isInterrupted);
     Timing timing;
@@ -133,6 +149,12 @@ std::string formatSeconds(double value) {
   return text;
 }
 
+std::string formatPercent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
+  return text;
+}
+
 }  // namespace
 
 int runMoves(const Options& options, const std::string& sharesText) {
@@ -149,9 +171,15 @@ int runMoves(const Options& options, const std::string& sharesText) {
   Job keptJob, freshJob;  // nodes belong to one plan
   prepareJob(options, false, freshJob);
   Options keeping = options;
-  const std::string visibility = findVisibility(freshJob).name;
-  keeping.sets.push_back(visibility + ".keep=true");
+  // Whose rays are kept.
+  const std::string faces = findVisibility(freshJob).name;
+  std::string pixels;
+  for (const graph::Graph::Entry& entry : freshJob.graph.nodes())
+    if (entry.node->type() == clustered_voxel::GatherPixels::kType) pixels = entry.name;
+  keeping.sets.push_back(faces + ".keep=true");
+  if (!pixels.empty()) keeping.sets.push_back(pixels + ".keep=true");
   prepareJob(keeping, false, keptJob);
+  keptJob.lights.fixed = freshJob.lights.fixed = false;
   const scene::Scene scene = scene::loadScene(options.scene, options.sky);
   const scene::CameraDescription& camera = scene::findCamera(scene, options.camera.empty() ? "0" : options.camera);
   const scene::Traits traits = scene.traits();
@@ -162,37 +190,55 @@ int runMoves(const Options& options, const std::string& sharesText) {
   const float by = 0.02f * extent[axis];
 
   Renderer kept(*device, keptJob, scene, camera), fresh(*device, freshJob, scene, camera);
-  kept.render(scene);  // compiles shaders late; it is not counted
-  fresh.render(scene);
-  std::cout << "| moved | voxels changed | rays traced | visibility, s | all, s | from scratch: visibility, s | all, s | same bits |\n"
-               "|---|---|---|---|---|---|---|---|\n";
+  kept.render();  // compiles shaders late; it is not counted
+  fresh.render();
+  std::cout << "| moved | voxels changed | faces' rays traced | pixels' rays traced | s | from scratch, s | same bits |\n"
+               "|---|---|---|---|---|---|---|\n";
   bool same = true;
   std::vector<Timing> after;
   std::vector<std::string> columns;
   Timing scratch;
+  /// A picture of both, each having been told what it must know; from scratch everything runs.
+  const auto compare = [&](const std::string& column, const scene::Scene& there) {
+    after.push_back(kept.render());
+    fresh.setGeometry(there);
+    scratch = fresh.render();
+    const bool equal = kept.picture(there) == fresh.picture(there);
+    same = same && equal;
+    columns.push_back(column);
+    const auto figure = [&](const std::string& node, const char* name) {
+      const auto found = after.back().nodes.contains(node) ? after.back().figures.find(node + name) : after.back().figures.end();
+      return found != after.back().figures.end() ? found->second : 0.0;
+    };
+    const auto percent = [](double part, double whole) { return formatPercent(part / std::max(1.0, whole)); };
+    std::cout << "| " << column << " | " << percent(figure(faces, ".changed_voxels"), after.back().voxels) << " | "
+              << percent(figure(faces, ".traced_rays"), figure(faces, ".rays")) << " | "
+              << (pixels.empty() ? "none" : percent(figure(pixels, ".traced_rays"), figure(pixels, ".rays"))) << " | "
+              << formatSeconds(after.back().seconds) << " | " << formatSeconds(scratch.seconds) << " | " << (equal ? "yes" : "no") << " |"
+              << std::endl;
+  };
+  const scene::Scene turned = moveLights(scene, axis, by);
+  if (!scene.lights.empty()) {
+    kept.setLights(turned);
+    compare("lights", turned);
+    kept.setLights(scene);
+    kept.render();  // back, for the next
+  }
+  scene::CameraDescription beside = camera;
+  beside.position[axis] += 0.1f * by;
+  kept.setCamera(beside);
+  fresh.setCamera(beside);
+  compare("camera", scene);
+  kept.setCamera(camera);
+  fresh.setCamera(camera);
+  kept.render();
   for (const double share : shares) {
     size_t moved = 0;
     const scene::Scene there = moveShare(scene, pieces, share, axis, by, moved);
-    after.push_back(kept.render(there));
-    scratch = fresh.render(there);
-    const bool equal = kept.picture(there) == fresh.picture(there);
-    same = same && equal;
-    const auto figure = [&](const char* name) {
-      const auto found = after.back().figures.find(visibility + name);
-      return found != after.back().figures.end() ? found->second : 0.0;
-    };
-    const auto seconds = [&](const Timing& timing) { return timing.nodes.contains(visibility) ? timing.nodes.at(visibility) : 0.0; };
-    const double part = static_cast<double>(moved) / static_cast<double>(std::max<size_t>(scene.triangleCount(), 1));
-    char column[32];
-    std::snprintf(column, sizeof column, "%.1f %%", 100.0 * part);
-    columns.emplace_back(column);
-    char line[256];
-    std::snprintf(line, sizeof line, "| %s | %.1f %% | %.1f %% | %.2f | %.2f | %.2f | %.2f | %s |", column,
-                  100.0 * figure(".changed_voxels") / std::max(1.0, after.back().voxels),
-                  100.0 * figure(".traced_rays") / std::max(1.0, figure(".rays")), seconds(after.back()), after.back().seconds,
-                  seconds(scratch), scratch.seconds, equal ? "yes" : "no");
-    std::cout << line << std::endl;
-    kept.render(scene);  // back, for the next
+    kept.setGeometry(there);
+    compare(formatPercent(static_cast<double>(moved) / static_cast<double>(std::max<size_t>(scene.triangleCount(), 1))), there);
+    kept.setGeometry(scene);
+    kept.render();
   }
   std::cout << "\n| node, s | from scratch |";
   for (const std::string& column : columns) std::cout << " " << column << " |";

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/error.h"
+#include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
 #include "samples/cli/picture.h"
 #ifdef RADIVOX_WITH_VDB
 #include "modules/vdb/dump.h"
@@ -72,7 +73,14 @@ Method::Method(gpu::Device& device, const scene::Scene& scene, const View& view,
     for (const graph::Graph::Entry& entry : job_->graph.nodes()) cheapen(entry.node->params(), entry.name, fixed_);
     cheapen(job_->lightParams, "lights", fixed_);
   }
-  job_->lights.fixed = false;  // they are moved while the picture is looked at
+  // Lights are moved while the picture is looked at, and then no ray of a pixel is traced again.
+  job_->lights.fixed = false;
+  for (const graph::Graph::Entry& entry : job_->graph.nodes()) {
+    const std::string keep = entry.name + ".keep";
+    const bool isSaid =
+        std::any_of(view.settings.begin(), view.settings.end(), [&](const std::string& text) { return Setting(text).name == keep; });
+    if (entry.node->type() == clustered_voxel::GatherPixels::kType && !isSaid) job_->graph.set(keep, "true");
+  }
   planKey_ = planKey(view);
   gpuScene_ = std::make_unique<scene::GpuScene>(device, scene, job_->lights);
   compile(scene);

@@ -30,13 +30,34 @@ struct WalkHit {
   vec3 normal;    // of the triangle, unit, on the side that the ray sees
 };
 
+WalkHit hitOfTriangle(TraversalRay way, uint triangle, vec2 time) {
+  vec3 normal = cornerNormal(triangle);
+  precise float at = time.x * preciseReciprocal(time.y);
+  return WalkHit(kHitNothing, at, triangle, triangleDot(normal, way.direction) > 0.0 ? -normal : normal);
+}
+
+// The same hit again, from its face and triangle. Where it has no triangle, its time is not known.
+WalkHit keptHit(TraversalRay way, uvec2 kept) {
+  WalkHit hit = WalkHit(kHitNothing, 0.0, kNone, vec3(0.0));
+  if (kept.y != kNone) {
+    vec2 time;
+    meetsTriangle(way, kept.y, 0.0, vec2(0.0, 1.0), time);
+    hit = hitOfTriangle(way, kept.y, time);
+  }
+  hit.face = kept.x;
+  return hit;
+}
+
 // Voxels are searched for triangles while the ray enters them before `nearDistance`; beyond, and from the first voxel on whose list is empty (too many
 // triangles), its planes count, without `excluded` ones in the first voxel. A plane that is met from behind counts where one of the voxel's triangles is
 // met, and as that triangle; else the ray goes on. (In Sponza, N = 128, one ray in a hundred met such a plane, and hardly any a back: what
 // the others ended on was dark, and indirect light 0.989 of the truth instead of 1.003.) `own`: the triangle that the ray starts from, `lift` (voxels) off it.
+// `startList`: entries of the first voxel's list that its ray may meet, so that rays from one point leave out the others once (all: kWholeList).
 //
 // CPU devices execute both sides of every branch, for all lanes: what a ray needs once is not in the loops.
-WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float lift, float nearDistance, uint random) {
+const uvec2 kWholeList = uvec2(0u, 0xffffffffu);
+
+WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uvec2 startList, uint own, float lift, float nearDistance, uint random) {
   WalkHit result = WalkHit(kHitNothing, 0.0, kNone, vec3(0.0));
   TraversalCursor cursor = TraversalCursor(vec3(start), 0.0);
   bool atStart = true;
@@ -51,6 +72,10 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
     if (voxel == kNone || cursor.time >= nearDistance) break;
     uint first = triangleFirst(voxel), end = triangleFirst(voxel + 1u);
     if (first == end) break;
+    if (atStart) {
+      first = max(first, startList.x);
+      end = min(end, startList.y);
+    }
     met = nearestTriangle(way, cursor, first, end, own, lift, time, listed);
     if (met) break;
     last = cursor;
@@ -100,11 +125,7 @@ WalkHit walkRay(TraversalRay way, ivec3 start, uint excluded, uint own, float li
   result.face = faceOfPlane(way, plane, random);
   result.time = cursor.time;
   if (met) {
-    result.triangle = listedTriangle(listed);
-    vec3 normal = cornerNormal(result.triangle);
-    result.normal = triangleDot(normal, way.direction) > 0.0 ? -normal : normal;
-    precise float at = time.x * preciseReciprocal(time.y);
-    result.time = at;
+    result = hitOfTriangle(way, listedTriangle(listed), time);
     result.face = faceTowards(voxel, result.normal, listedApart(listed), random);
   }
   return result;

@@ -146,6 +146,79 @@ TEST_F(Moving, SlowEveryKindOfRay) {
 
 TEST_F(Moving, SlowTheFaceReceiverToo) { EXPECT_LT(moveAbout(kSmall, "clustered_voxel", 1), 0.7); }
 
+// gather_pixels.keep: the picture is the same bit for bit, and light that moves traces no ray of a pixel.
+TEST_F(Moving, SlowLightTracesNoRayOfAPixel) {
+  struct Kind {
+    const char* name;
+    const char* scene;
+    Settings settings;
+    scene::LightOptions lights;
+    const char* sky = "";
+  };
+  scene::LightOptions byRays;
+  byRays.emitterSamples = 0;
+  const Kind kinds[] = {{"near hits look their light up", "cornell_point", {{"gather_pixels.rays", "10"}}, {}},
+                        {"triangles all the way", "cornell_point", {{"gather_pixels.near", "4096"}, {"gather_pixels.smooth", "0"}}, {}},
+                        {"no triangles", "cornell_point", {{"gather_pixels.near", "0"}}, {}},
+                        {"sun and even sky", "atrium?triangles=3000", {{"gather_pixels.rays", "5"}}, {}},
+                        {"sky's image", "atrium?triangles=3000", {{"gather_pixels.rays", "50"}}, {}, "builtin:clear"},
+                        {"emitters by rays", "cornell", {}, byRays}};
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.name);
+    scene::Scene s = scene::loadScene(std::string("builtin:") + kind.scene, kind.sky);
+    PipelineOptions o = options(kSmall, "clustered_voxel_pixels");
+    o.settings.insert(o.settings.end(), kind.settings.begin(), kind.settings.end());
+    o.lights = kind.lights;
+    Pipeline fresh(device(), s, o);
+    o.settings.emplace_back("gather_pixels.keep", "true");
+    Pipeline kept(device(), s, o);
+    const auto expectSame = [&](bool traces) {
+      fresh.run();
+      kept.run();
+      EXPECT_EQ(kept.picture("composite.color").data, fresh.picture("composite.color").data);
+      EXPECT_EQ(kept.figure("gather_pixels", "traced_rays"), traces ? kept.figure("gather_pixels", "rays") : 0.0);
+    };
+    expectSame(true);
+    const std::vector<float> before = kept.picture("composite.color").data;
+    scene::Scene moved = s;
+    for (scene::PunctualLight& light : moved.lights) {
+      light.position += glm::vec3(0.1f, 0.f, 0.05f);
+      light.direction = glm::normalize(light.direction + glm::vec3(0.2f, 0.f, 0.1f));
+      light.intensity *= 1.25f;
+    }
+    if (!moved.lights.empty()) {
+      kept.setLights(moved);
+      fresh.setLights(moved);
+      expectSame(false);
+      EXPECT_NE(kept.picture("composite.color").data, before);
+    }
+    scene::CameraDescription camera = s.cameras.front();
+    camera.position += glm::vec3(0.05f, 0.02f, 0.f);
+    kept.setCamera(camera);
+    fresh.setCamera(camera);
+    expectSame(true);
+  }
+}
+
+// More hits than a storage buffer's binding shows on CPU devices.
+TEST_F(Moving, SlowManyHitsAreKept) {
+  PipelineOptions o = options(kSmall, "clustered_voxel_pixels");
+  o.width = 320;
+  o.height = 216;
+  o.settings.insert(o.settings.end(), {{"voxelize.resolution", "16"}, {"gather_pixels.rays", "250"}, {"gather_pixels.near", "0"}});
+  scene::Scene s = scene::makeBuiltin("cornell_point");
+  Pipeline fresh(device(), s, o);
+  fresh.run();
+  o.settings.emplace_back("gather_pixels.keep", "true");
+  Pipeline kept(device(), s, o);
+  kept.run();
+  ASSERT_GT(kept.executor->findBuffer("gather_pixels.hits")->bytes(), 128u << 20);
+  kept.setLights(s);
+  kept.run();
+  EXPECT_EQ(kept.figure("gather_pixels", "traced_rays"), 0);
+  EXPECT_EQ(kept.picture("composite.color").data, fresh.picture("composite.color").data);
+}
+
 TEST_F(Moving, WhatDoesNotFitIsRefused) {
   scene::Scene s = scene::makeBuiltin("cornell_point");
   scene::GpuScene onDevice(device(), s);

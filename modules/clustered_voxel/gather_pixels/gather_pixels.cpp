@@ -1,6 +1,7 @@
 #include "modules/clustered_voxel/gather_pixels/gather_pixels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "modules/clustered_voxel/sky/sky.h"
@@ -17,6 +18,12 @@ namespace {
 constexpr uint32_t kBlock = 4;  // pixels a side of an interleaving block; the shaders know it too
 // Where voxels hold many triangles a ray takes a thousand rounds of loops, and llvmpipe ends a lane's after 65535.
 constexpr uint32_t kRaysPerDispatch = 48;
+// Inputs that no ray's way depends on.
+constexpr std::array<std::string_view, 10> kLight{"face_radiosity", "shadow_depth", "shadow_triangle", "face_irradiance",
+                                                  "sky_irradiance", "emission",     "scene.lights",    "scene.shadow_views",
+                                                  "scene.info",     "scene.sky"};
+// What a dispatch does (trace.comp).
+constexpr uint32_t kTraceAndLight = 0, kTraceOnly = 1, kLightOnly = 2;
 }  // namespace
 
 std::vector<glm::vec2> sobolPoints(uint32_t count) {
@@ -49,7 +56,10 @@ GatherPixels::GatherPixels()
                       "smooth", &smooth_, {0, 4},
                       "extra passes of the filter, each twice as wide; they stop at edges, and where light differs by more than its noise",
                       params::Invalidates::Plan),
-                  {"0", "1", "2", "3"}, "0")}) {}
+                  {"0", "1", "2", "3"}, "0"),
+              params::flag("keep", &keep_,
+                           "keep what each ray hit, 8 B a ray: while only light changes none is traced again, to the same result",
+                           params::Invalidates::Plan)}) {}
 
 void GatherPixels::declare(graph::Declaration& d) {
   const Shape image = Shape::image(VK_FORMAT_R32G32B32A32_SFLOAT, Extent::of("width"), Extent::of("height"));
@@ -91,6 +101,14 @@ void GatherPixels::declare(graph::Declaration& d) {
   d.write("sky", image, "E_sky, W/m², of a sky with an image; 0 on the sky").optional = true;
   readEmission(d, "emission", "mean B_e of each face, W/m²");
   d.write("emitted", image, "irradiance from emitters, found by the rays, W/m²; 0 on the sky").optional = true;
+  if (keep_)
+    d.write("hits", Shape::buffer(8, Extent::of("width") * "height" * rays_),
+            "face and triangle that each ray hit; a plane of pixels a ray", graph::UseAddress | graph::UseTransfer)
+        .persistent = true;
+  ways_.clear();
+  for (const graph::Port& port : d.ports)
+    if (port.access == graph::Access::Read && std::find(kLight.begin(), kLight.end(), port.name) == kLight.end())
+      ways_.push_back(port.name);
   // A filter of several passes knows the noise of what it smooths.
   const auto spread = [](bool evenSky) { return Shape::buffer((evenSky ? 2 : 1) * sizeof(float), Extent::of("width") * "height"); };
   const bool evenSky = d.traits.sky && !d.traits.skyImage;
@@ -123,10 +141,10 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   std::vector<BindingType> bindings(32, kB);
   for (const size_t map : {25, 26}) bindings[map] = BindingType::SampledImage;
   for (const size_t image : {6, 7, 11, 15, 30, 31}) bindings[image] = kI;
-  const auto trace = [&](uint32_t skip) {
+  const auto trace = [&](uint32_t skip, uint32_t work) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/trace.comp",
                                                           .bindings = bindings,
-                                                          .pushConstantBytes = 80,
+                                                          .pushConstantBytes = 88,
                                                           .constants = {{0, skip},
                                                                         {1, hasTriangles_ ? 1u : 0u},
                                                                         {2, isMasked_ ? 1u : 0u},
@@ -135,10 +153,12 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
                                                                         {5, context.has("sky_irradiance") ? 1u : 0u},
                                                                         {6, hasSky_ ? 1u : 0u},
                                                                         {7, hasEmitted_ ? 1u : 0u},
-                                                                        {8, smooth_ > 0 ? 1u : 0u}}});
+                                                                        {8, smooth_ > 0 ? 1u : 0u},
+                                                                        {9, work}}});
   };
-  traceBricks_ = trace(1);
-  if (context.has("clearance")) trace_ = trace(2);
+  traceBricks_ = trace(1, keep_ ? kTraceOnly : kTraceAndLight);
+  if (context.has("clearance")) trace_ = trace(2, keep_ ? kTraceOnly : kTraceAndLight);
+  if (keep_) light_ = trace(1, kLightOnly);
   const auto filter = [&](bool evenSky) {
     return gpu::Pipeline(device, gpu::ComputePipelineInfo{.shader = "clustered_voxel/gather_pixels/filter.comp",
                                                           .bindings = {kB, kI, kI, kI, kI, kB, kB},
@@ -147,6 +167,10 @@ void GatherPixels::prepare(graph::PrepareContext& context) {
   };
   filter_ = filter(hasEvenSky_);
   if (hasSky_ || hasEmitted_) lightFilter_ = filter(false);
+}
+
+bool GatherPixels::waysChanged(graph::RecordContext& context) const {
+  return context.firstRun() || std::any_of(ways_.begin(), ways_.end(), [&](const std::string& port) { return context.changed(port); });
 }
 
 void GatherPixels::record(graph::RecordContext& context) {
@@ -159,7 +183,7 @@ void GatherPixels::record(graph::RecordContext& context) {
     uint32_t width, height, rays, firstRay, endRay, voxelCount;
     float near;
     uint32_t lightCount;
-    VkDeviceAddress sky, skyInfo, emission, squares, skySquares, emittedSquares;
+    VkDeviceAddress sky, skyInfo, emission, squares, skySquares, emittedSquares, hits;
   } push{raw.info().width,
          raw.info().height,
          rays_,
@@ -173,7 +197,8 @@ void GatherPixels::record(graph::RecordContext& context) {
          hasEmitted_ ? context.buffer("emission").address() : 0,
          spread("spread", true),
          spread("spread_sky", hasSky_),
-         spread("spread_emitted", hasEmitted_)};
+         spread("spread_emitted", hasEmitted_),
+         keep_ ? context.buffer("hits").address() : 0};
   // No planes where there are no voxels.
   const std::vector<const gpu::Buffer*> planes = context.grown("planes");
   // Visibility makes no clearance where its parameters or the size of the grid ask for bricks.
@@ -185,41 +210,52 @@ void GatherPixels::record(graph::RecordContext& context) {
   if (hasTriangles_) ids = context.grown("triangle_ids");
   const auto optional = [&](const char* name, bool present) -> const gpu::Buffer& { return present ? context.buffer(name) : distance; };
   const auto map = [&](const char* name) -> const gpu::Image& { return hasShadow_ ? context.image(name) : absent_; };
-  bindStructure(context, grown.empty() ? traceBricks_ : trace_,
-                {position,
-                 normal,
-                 distance,
-                 context.buffer("face_radiosity"),
-                 directions_,
-                 raw,
-                 planes.empty() ? distance : *planes.front(),
-                 context.buffer("plane_extras"),
-                 grown.empty() ? distance : *grown.front(),
-                 context.image("triangle"),
-                 optional("triangle_first", hasTriangles_),
-                 ids.empty() ? distance : *ids.front(),
-                 optional("scene.vertices", hasTriangles_),
-                 optional("scene.indices", hasTriangles_),
-                 optional("scene.triangle_materials", isMasked_ || hasShadow_),
-                 optional("scene.materials", isMasked_ || hasShadow_),
-                 optional("scene.textures", isMasked_),
-                 optional("scene.lights", hasShadow_),
-                 optional("scene.shadow_views", hasShadow_),
-                 map("shadow_depth"),
-                 map("shadow_triangle"),
-                 optional("face_irradiance", hasShadow_),
-                 optional("corners", context.has("corners")),
-                 optional("sky_irradiance", context.has("sky_irradiance")),
-                 hasEmitted_ ? context.image("raw_emitted") : absent_,
-                 hasSky_ ? context.image("raw_sky") : absent_},
-                "first");
   // Lanes side by side hold pixels of the same place in their blocks: they walk along the same directions.
   const uint64_t blocks = uint64_t{(push.width + kBlock - 1) / kBlock} * ((push.height + kBlock - 1) / kBlock);
-  for (push.firstRay = 0; push.firstRay < rays_; push.firstRay = push.endRay) {
-    if (push.firstRay > 0) commands.barrier();
-    push.endRay = std::min(rays_, push.firstRay + kRaysPerDispatch);
-    commands.push(push);
-    commands.dispatchItems(blocks * kBlock * kBlock, 64);
+  const auto run = [&](const gpu::Pipeline& pipeline) {
+    bindStructure(context, pipeline,
+                  {position,
+                   normal,
+                   distance,
+                   context.buffer("face_radiosity"),
+                   directions_,
+                   raw,
+                   planes.empty() ? distance : *planes.front(),
+                   context.buffer("plane_extras"),
+                   grown.empty() ? distance : *grown.front(),
+                   context.image("triangle"),
+                   optional("triangle_first", hasTriangles_),
+                   ids.empty() ? distance : *ids.front(),
+                   optional("scene.vertices", hasTriangles_),
+                   optional("scene.indices", hasTriangles_),
+                   optional("scene.triangle_materials", isMasked_ || hasShadow_),
+                   optional("scene.materials", isMasked_ || hasShadow_),
+                   optional("scene.textures", isMasked_),
+                   optional("scene.lights", hasShadow_),
+                   optional("scene.shadow_views", hasShadow_),
+                   map("shadow_depth"),
+                   map("shadow_triangle"),
+                   optional("face_irradiance", hasShadow_),
+                   optional("corners", context.has("corners")),
+                   optional("sky_irradiance", context.has("sky_irradiance")),
+                   hasEmitted_ ? context.image("raw_emitted") : absent_,
+                   hasSky_ ? context.image("raw_sky") : absent_},
+                  "first");
+    for (push.firstRay = 0; push.firstRay < rays_; push.firstRay = push.endRay) {
+      if (push.firstRay > 0) commands.barrier();
+      push.endRay = std::min(rays_, push.firstRay + kRaysPerDispatch);
+      commands.push(push);
+      commands.dispatchItems(blocks * kBlock * kBlock, 64);
+    }
+  };
+  const bool traces = !keep_ || waysChanged(context);
+  if (traces) run(grown.empty() ? traceBricks_ : trace_);
+  if (keep_) {
+    if (traces) commands.barrier();
+    run(light_);
+    const double all = static_cast<double>(rays_) * push.width * push.height;
+    context.reportStat("rays", all);
+    context.reportStat("traced_rays", traces ? all : 0.0);
   }
 
   filter(context, "", "irradiance");

@@ -8,6 +8,7 @@
 //                                   the image about it (scene.sky, scene.info); elsewhere π L × sky visibility is that
 //         emitted?   image RGBA32F  irradiance that emitters bring straight, W/m², where they light by rays (Traits::emittersByRays): each
 //                                   ray that ends on a face brings its B_e. For direct.emitted, which else has them without shadows
+//         hits?      buffer uvec2 × pixels × rays  with `keep`: face and triangle of each ray; while only light changes none is traced again
 // runs    when the view, the voxels or the radiosity change
 // cost    pixels × rays grid walks, the first voxels of each against the triangles in them; one pass of 25 reads a pixel (and 9 more a `smooth` pass)
 // source  beyond the paper (METHODS section 1, "The receiver is where the error sits"): irradiance interpolated over voxels loses
@@ -41,16 +42,19 @@ class GatherPixels : public graph::Node {
   uint32_t smooth_ = 3;
   float near_ = 2.f;
   bool shadow_ = true;
+  bool keep_ = false;
   bool hasTriangles_ = false, isMasked_ = false, hasShadow_ = false;
-  bool hasSky_ = false;      ///< with an image
-  bool hasEvenSky_ = false;  ///< without
-  bool hasEmitted_ = false;  ///< emitters light by rays
+  bool hasSky_ = false;            ///< with an image
+  bool hasEvenSky_ = false;        ///< without
+  bool hasEmitted_ = false;        ///< emitters light by rays
+  std::vector<std::string> ways_;  ///< inputs that rays' ways depend on
+  bool waysChanged(graph::RecordContext& context) const;
   void filter(graph::RecordContext& context, const std::string& suffix, const char* out);
 
   params::Table table_;
   const gpu::Image absent_;  ///< bound where the specialized shader reads nothing
   gpu::Buffer directions_;
-  gpu::Pipeline trace_, traceBricks_, filter_, lightFilter_;
+  gpu::Pipeline trace_, traceBricks_, light_, filter_, lightFilter_;
 };
 
 /// The first points of the (0,2)-sequence of Sobol: any aligned power-of-two run is well spread over the unit square.

@@ -53,6 +53,11 @@ layout(constant_id = 7) const bool kEmitted = false;  // emitters light through 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Emission { vec3 of[]; };
 layout(set = 0, binding = 30, rgba32f) uniform image2D rawEmittedImage;
 layout(constant_id = 8) const bool kSpread = false;   // the filter asks how much the rays of a pixel differ
+const uint kTraceAndLight = 0u;
+const uint kTraceOnly = 1u;  // what rays hit is kept
+const uint kLightOnly = 2u;  // rays hit what they hit when last traced
+layout(constant_id = 9) const uint kWork = kTraceAndLight;
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Hits { uvec2 of[]; };  // face, triangle: a plane of pixels a ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Squares { float of[]; };
 layout(push_constant, scalar) uniform Push {
   uint width;
@@ -69,6 +74,7 @@ layout(push_constant, scalar) uniform Push {
   uvec2 squares;       // of the mean squares of what each pixel's rays bring (luminance): light from surfaces,
   uvec2 skySquares;    // the sky image's light,
   uvec2 emittedSquares;  // emitters'
+  uvec2 hits;
 };
 #include "clustered_voxel/structure.glsl"
 #include "shared/voxel_walk.glsl"
@@ -102,9 +108,25 @@ void frameOf(vec3 n, out vec3 t, out vec3 b) {
   b = vec3(c, s + n.y * n.y * a, -n.y);
 }
 
+const float kNearLift = 1e-3;  // voxels
+
+// The entries of a list, from the first to the last, that a ray from `origin` into the half space of n may meet: all that is not wholly below. nearestTriangle()
+// takes hits from −0.5 lifts on, and meetsTriangle() triangles that are wider by kEdgeSlack.
+uvec2 listAbove(uvec2 list, vec3 origin, vec3 n, uint own) {
+  uvec2 above = uvec2(list.y, list.x);
+  for (uint e = list.x; e < list.y; ++e) {
+    uint id = listedTriangle(triangleIds(e));
+    vec3 a, b, c;
+    loadCorners(id, a, b, c);
+    vec3 heights = vec3(dot(a - origin, n), dot(b - origin, n), dot(c - origin, n));
+    float highest = max(heights.x, max(heights.y, heights.z)), lowest = min(heights.x, min(heights.y, heights.z));
+    if (id != own && highest + 4.0 * kEdgeSlack * (highest - lowest) > -0.75 * kNearLift) above = uvec2(min(above.x, e), e + 1u);
+  }
+  return above;
+}
+
 // Blocks side by side with nearly one shift: as many as lanes walk together, so that they walk the same way.
 const uint kShiftRun = 8u;
-const float kNearLift = 1e-3;  // voxels
 
 void main() {
   castBegin();
@@ -126,8 +148,11 @@ void main() {
   bool crowded = false;
   uint excluded = 0x3fu;
   uint startVoxel = voxelIndex(start);
-  if (startVoxel != kNone) excluded = ownPlanes(startVoxel, uvec3(start), p, n, crowded);
+  bool walks = kWork != kLightOnly && startVoxel != kNone;
+  if (walks) excluded = ownPlanes(startVoxel, uvec3(start), p, n, crowded);
   uint own = end > 0u ? imageLoad(triangleImage, ivec2(pixel)).x - 1u : 0u;
+  uvec2 startList = kWholeList;
+  if (kNear && end > 0u && walks) startList = listAbove(uvec2(triangleFirst(startVoxel), triangleFirst(startVoxel + 1u)), origin, n, own);
   vec3 t, b;
   frameOf(n, t, b);
 
@@ -138,7 +163,7 @@ void main() {
   uint inRun = block % kShiftRun;
   shift += (vec2(float(inRun), float(bitfieldReverse(inRun) >> 29)) + 0.5) * (inversesqrt(16.0 * float(rays)) / float(kShiftRun));
 
-  bool goesOn = firstRay > 0u && end > 0u;
+  bool goesOn = kWork != kTraceOnly && firstRay > 0u && end > 0u;
   vec4 sum = goesOn ? imageLoad(rawImage, ivec2(pixel)) : vec4(0.0);
   vec3 skySum = kSkyImage && goesOn ? imageLoad(rawSkyImage, ivec2(pixel)).xyz : vec3(0.0);
   vec3 emittedSum = kEmitted && goesOn ? imageLoad(rawEmittedImage, ivec2(pixel)).xyz : vec3(0.0);
@@ -151,7 +176,14 @@ void main() {
     vec2 square = fract(directions[place * rays + ray] + shift);
     float radius = sqrt(square.x), turn = 6.283185307179586 * square.y;
     TraversalRay way = makeTraversalRay(origin, (t * cos(turn) + b * sin(turn)) * radius + n * sqrt(1.0 - square.x));
-    WalkHit hit = walkRay(way, start, excluded, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray));
+    WalkHit hit;
+    uint kept = ray * width * height + cell;
+    if (kWork == kLightOnly) hit = keptHit(way, Hits(hits).of[kept]);
+    else hit = walkRay(way, start, excluded, startList, own, kNearLift, kNear ? nearDistance : 0.0, rayRandom(i, ray));
+    if (kWork == kTraceOnly) {
+      Hits(hits).of[kept] = uvec2(hit.face, hit.triangle);
+      continue;
+    }
     bool isFace = hit.face < kHitBack;
     uint face = isFace ? hit.face : 0u;
     vec3 radiosity = faceRadiosity[face];
@@ -181,7 +213,7 @@ void main() {
       emittedSquareSum += arrivingEmitted * arrivingEmitted;
     }
   }
-  if (!isPixel) return;
+  if (!isPixel || kWork == kTraceOnly) return;
   bool done = endRay == rays;
   if (kSkyImage) imageStore(rawSkyImage, ivec2(pixel), vec4(done ? 3.14159265358979 / float(rays) * skySum : skySum, 0.0));
   if (kEmitted) imageStore(rawEmittedImage, ivec2(pixel), vec4(done ? emittedSum / float(rays) : emittedSum, 0.0));

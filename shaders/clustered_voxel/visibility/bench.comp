@@ -33,7 +33,7 @@ float castRay(BenchRay ray, uint random) {
     return isOutside(cursor.voxel) ? -1.0 : cursor.time;
   }
   float triangles = kTask == kBenchWalk ? triangleDistance : 0.0;
-  WalkHit hit = walkRay(way, voxelAt(ray.origin), ray.excluded, ray.own, kPieceLift, triangles, random);
+  WalkHit hit = walkRay(way, voxelAt(ray.origin), ray.excluded, kWholeList, ray.own, kPieceLift, triangles, random);
   return hit.face == kHitNothing ? -1.0 : hit.time;
 }
 

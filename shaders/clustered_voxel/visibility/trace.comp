@@ -40,7 +40,7 @@ void main() {
       vec3 about;
       uint own;
       TraversalRay way = rayFromPiece(start, at, about, own);
-      WalkHit hit = walkRay(way, voxelAt(way.origin), start.excluded, own, kPieceLift, triangleDistance, rayRandom(start.seed, at));
+      WalkHit hit = walkRay(way, voxelAt(way.origin), start.excluded, kWholeList, own, kPieceLift, triangleDistance, rayRandom(start.seed, at));
       hits[row * rayCount + at] = hitWord(hit.face, hit.time, way.direction);
     }
     return;
